@@ -1,0 +1,98 @@
+// What is to be simulated: plain typed structs in SI units, x to the right, z up, origin at the lower left corner.
+// A scene says everything that can change a result and nothing else: no wall clock, no thread count, no folders.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/material/material.hpp"
+
+namespace fracfarm {
+
+enum class Method { phase_field };
+enum class CrackSet { orthogonal, oblique };
+
+// A crack, from end to end (m).
+struct Segment {
+  double x0 = 0.0;
+  double z0 = 0.0;
+  double x1 = 0.0;
+  double z1 = 0.0;
+};
+
+// Horizontal layers from the bottom up; `below` is the layer's top (m), the last one reaches the domain's top.
+struct Layer {
+  double below = 0.0;
+  Material material;
+};
+
+enum class Side { left, right, bottom, top };
+inline constexpr std::array<Side, 4> all_sides{Side::left, Side::right, Side::bottom, Side::top};
+
+enum class Tangential { free, fixed, velocity };
+
+// What happens on a part of a side. Normal velocity is positive outward (extension); ramps are linear from 0 over `ramp` seconds.
+struct SideLoad {
+  double from = 0.0;  // m along the side, from its lower or left end
+  double to = 0.0;
+  std::optional<double> normal_velocity;  // m/s; 0 holds the side
+  Tangential tangential = Tangential::free;
+  double tangential_velocity = 0.0;                 // m/s along +x or +z
+  double ramp = 0.0;                                // s
+  std::optional<std::array<double, 2>> traction;    // Pa, (x, z)
+};
+
+struct Initial {
+  std::array<double, 3> strain{};             // xx, zz, xz (tensor shear)
+  std::array<double, 4> velocity_gradient{};  // dvx/dx dvx/dz dvz/dx dvz/dz, about the domain's centre
+};
+
+enum class Stop { failure, horizon };
+enum class CrackSeeding { slot };
+enum class PlasticityModel { none, secant };
+
+struct LengthScale {
+  enum class Kind { half, full, metres } kind = Kind::half;
+  double metres = 0.0;
+};
+
+struct PhaseFieldSettings {
+  int cells_x = 127;
+  int cells_z = 127;
+  LengthScale length_scale;
+  double residual_stiffness = 1e-6;  // eta
+  CrackSeeding crack_seeding = CrackSeeding::slot;
+  double cfl = 0.9;                  // of h / sqrt((C_max + C55) / rho)
+  std::optional<double> dt;          // s, instead of cfl
+  PlasticityModel plasticity = PlasticityModel::secant;
+};
+
+// Where a scene of a campaign came from; identification only, the cracks say what is solved.
+struct Sample {
+  CrackSet set = CrackSet::orthogonal;
+  std::uint64_t seed = 0;  // campaign seed
+  std::uint64_t id = 0;    // from 1
+  std::string load;        // uniaxial, biaxial
+};
+
+struct Scene {
+  Method method = Method::phase_field;
+  double width = 0.25;   // m
+  double height = 0.25;  // m
+  std::vector<Layer> layers;  // at least one
+  std::vector<Segment> cracks;
+  std::array<std::vector<SideLoad>, 4> loads;  // by Side; empty: free
+  Initial initial;
+  double horizon = 0.0;         // s
+  double frame_interval = 0.0;  // s
+  Stop stop = Stop::failure;
+  PhaseFieldSettings phase_field;
+  std::optional<Sample> sample;
+
+  const std::vector<SideLoad>& on(Side side) const { return loads[static_cast<std::size_t>(side)]; }
+};
+
+}  // namespace fracfarm

@@ -1,0 +1,54 @@
+// The solver's door: a scene in, everything that a record needs out. Knows no network, no ledger and no HDF5.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/base/result.hpp"
+#include "common/failure/failure.hpp"
+#include "common/failure/series.hpp"
+#include "common/scene/scene.hpp"
+
+namespace fracfarm {
+
+// What must not change a result: how long, where to keep a checkpoint, whom to tell.
+struct RunControl {
+  std::filesystem::path checkpoint;             // empty: none
+  std::string checkpoint_key;                   // a checkpoint of another key is ignored
+  double wall_budget_s = 8.0 * 3600.0;
+  const std::atomic<bool>* stop = nullptr;      // set by SIGTERM: save and end
+  std::function<void(long long step, double time, double horizon)> progress;  // called about twice a second
+  double step_scale = 1.0;                      // changes the result: 0.5 after SOLVER_NUMERIC
+};
+
+struct Frame {
+  double time = 0.0;       // s
+  std::vector<float> psi;  // by node
+};
+
+struct RunResult {
+  bool stopped = false;  // by RunControl::stop; a checkpoint was saved and nothing below counts
+  Judgement judgement;
+  std::vector<FailureTime> times;
+  double peak_stress = 0.0;  // Pa, largest mean vertical stress over time
+  std::vector<double> x, z;  // node coordinates, m
+  std::vector<unsigned char> mask_initial;
+  std::vector<float> psi_initial, psi_failure;
+  std::vector<Frame> frames;
+  Series series;
+  long long steps = 0;
+  double dt = 0.0;               // s, of the last step
+  double energy_residual = 0.0;  // largest |residual| over largest external work
+  double cpu_s = 0.0, wall_s = 0.0;
+  std::map<std::string, double> stages;  // seconds by stage
+  std::string kernel;                    // ISA path and precision
+};
+
+// Errors: SOLVER_NUMERIC with evidence (step, time, what was not finite or did not close), NODE_LOST where the checkpoint cannot be written.
+Result<RunResult> solve(const Scene& scene, const RunControl& control);
+
+}  // namespace fracfarm
