@@ -21,27 +21,30 @@ enum class Fault {
 
 // What the coordinator does with a job after a fault of this class.
 enum class FaultAction {
-  ready_at_once,     // back to READY, nothing counted
-  another_node,      // RETRY_WAIT with backoff, another node where there is one
-  half_step,         // RETRY_WAIT once with half the time step
-  larger_memory,     // RETRY_WAIT with a larger memory class
-  done_censored,     // DONE(CENSORED): a valid result
-  quarantine,        // QUARANTINED: a person must look
+  ready_at_once,  // back to READY, nothing counted
+  another_node,   // RETRY_WAIT with backoff, another node where there is one
+  half_step,      // RETRY_WAIT once with half the time step
+  larger_memory,  // RETRY_WAIT with a larger memory class
+  done_censored,  // DONE(CENSORED): a valid result
+  quarantine,     // QUARANTINED: a person must look
 };
 
 struct FaultRow {
   Fault fault;
-  std::string_view name;     // as it is printed and stored
-  int job_budget;            // attempts that may end so before the job is QUARANTINED; 0: never counted against the job
+  std::string_view name;  // as it is printed and stored
+  int job_budget;         // attempts that may end so before the job is QUARANTINED; 0: never counted against the job
   bool blames_node;
   FaultAction action;
   std::string_view meaning;  // one line for people
 };
 
 inline constexpr std::array<FaultRow, 8> fault_table{{
-    {Fault::planned_stop, "PLANNED_STOP", 0, false, FaultAction::ready_at_once, "drain, preemption or the end of an allocation; the checkpoint is kept"},
-    {Fault::node_lost, "NODE_LOST", 5, true, FaultAction::another_node, "heartbeat lost, bus error, disk full or a missing library on the node"},
-    {Fault::output_bad, "OUTPUT_BAD", 3, true, FaultAction::another_node, "the record is truncated, reads back differently or breaks a rule"},
+    {Fault::planned_stop, "PLANNED_STOP", 0, false, FaultAction::ready_at_once,
+     "drain, preemption or the end of an allocation; the checkpoint is kept"},
+    {Fault::node_lost, "NODE_LOST", 5, true, FaultAction::another_node,
+     "heartbeat lost, bus error, disk full or a missing library on the node"},
+    {Fault::output_bad, "OUTPUT_BAD", 3, true, FaultAction::another_node,
+     "the record is truncated, reads back differently or breaks a rule"},
     {Fault::solver_crash, "SOLVER_CRASH", 3, false, FaultAction::another_node, "the solver ended by a signal or a non-zero exit, or hung"},
     {Fault::solver_numeric, "SOLVER_NUMERIC", 1, false, FaultAction::half_step, "not finite, energy ledger open or diverged"},
     {Fault::out_of_memory, "OUT_OF_MEMORY", 2, false, FaultAction::larger_memory, "killed by the memory limit"},

@@ -11,10 +11,10 @@ class RandomStream {
   // key: (seed, id); role: which quantity is drawn, so that adding a draw to one role moves no other.
   RandomStream(std::uint64_t seed, std::uint64_t id, std::uint32_t role);
 
-  std::uint64_t bits();                        // 64 uniform bits
-  double uniform();                            // [0, 1): the top 53 bits times 2^-53
-  double uniform(double low, double high);     // [low, high)
-  int integer(int low, int high);              // low...high inclusive, unbiased (rejection)
+  std::uint64_t bits();                     // 64 uniform bits
+  double uniform();                         // [0, 1): the top 53 bits times 2^-53
+  double uniform(double low, double high);  // [low, high)
+  int integer(int low, int high);           // low...high inclusive, unbiased (rejection)
 
  private:
   void refill();

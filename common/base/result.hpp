@@ -18,9 +18,7 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> fail(Fault fault, std::string message) {
-  return tl::unexpected<Error>(Error{fault, std::move(message)});
-}
+inline tl::unexpected<Error> fail(Fault fault, std::string message) { return tl::unexpected<Error>(Error{fault, std::move(message)}); }
 
 // One mistake in an input: where, what was given, what is allowed, what to do.
 struct Problem {
