@@ -17,12 +17,12 @@ namespace fracfarm {
 
 // What must not change a result: how long, where to keep a checkpoint, whom to tell.
 struct RunControl {
-  std::filesystem::path checkpoint;             // empty: none
-  std::string checkpoint_key;                   // a checkpoint of another key is ignored
+  std::filesystem::path checkpoint;  // empty: none
+  std::string checkpoint_key;        // a checkpoint of another key is ignored
   double wall_budget_s = 8.0 * 3600.0;
-  const std::atomic<bool>* stop = nullptr;      // set by SIGTERM: save and end
+  const std::atomic<bool>* stop = nullptr;                                    // set by SIGTERM: save and end
   std::function<void(long long step, double time, double horizon)> progress;  // called about twice a second
-  double step_scale = 1.0;                      // changes the result: 0.5 after SOLVER_NUMERIC
+  double step_scale = 1.0;                                                    // changes the result: 0.5 after SOLVER_NUMERIC
 };
 
 struct Frame {
@@ -48,7 +48,8 @@ struct RunResult {
   std::string kernel;                    // ISA path and precision
 };
 
-// Errors: SOLVER_NUMERIC with evidence (step, time, what was not finite or did not close), NODE_LOST where the checkpoint cannot be written.
+// Errors: SOLVER_NUMERIC with evidence (step, time, what was not finite or did not close), NODE_LOST where the checkpoint cannot be
+// written.
 Result<RunResult> solve(const Scene& scene, const RunControl& control);
 
 }  // namespace fracfarm

@@ -17,6 +17,7 @@ enum class CrackDirection { left_right, bottom_top };
 
 inline constexpr double through_crack_threshold = 0.9;  // psi above it is open crack (seed paper's pictures; physics page)
 inline constexpr double stress_drop_fraction = 0.1;
+inline constexpr double peak_prominence = 0.02;  // of a signal's range: what counts as a peak in the five-step pick
 
 // A field of rows x columns nodes, row 0 at the bottom.
 struct FieldView {
@@ -25,7 +26,8 @@ struct FieldView {
   int rows = 0;
 };
 
-// True where nodes with value > threshold join the two sides over 8-connected neighbours. `visited` is scratch of rows*columns, kept by the caller.
+// True where nodes with value > threshold join the two sides over 8-connected neighbours. `visited` is scratch of rows*columns, kept by the
+// caller.
 bool joins_sides(const FieldView& field, double threshold, CrackDirection direction, std::vector<unsigned char>& visited);
 
 // First time after the peak at which stress < fraction * peak; nothing where the stress never peaked above 0 or never dropped. s.
@@ -44,10 +46,12 @@ struct Judgement {
   Verdict verdict = Verdict::censored;
   std::optional<double> time_to_failure;  // s
   std::string rule;                       // the criterion that gave it, or why there is none (horizon, wall_clock)
-  double confidence = 0.0;                // 1 where the criteria agree, less the further they part; stated in the record
+  double confidence = 0.0;                // in [0, 1], see judge()
 };
 
 // Picks by the physics page: through crack, else stress drop, else censored with `otherwise` as the rule.
+// Confidence is the mean agreement of the other candidates with the choice: shorter over longer time where both are there, 0.5 where
+// only one of the two is, 1 where neither is; 0 where there is no other candidate. So 1 means that every criterion gives the same time.
 Judgement judge(std::span<const FailureTime> times, std::string_view otherwise);
 
 }  // namespace fracfarm

@@ -8,7 +8,8 @@
 
 namespace fracfarm {
 
-// Plane-strain stiffness in Voigt notation, z vertical, Pa. sigma_xx = C11 e_xx + C13 e_zz, sigma_zz = C13 e_xx + C33 e_zz, sigma_xz = C55 gamma_xz.
+// Plane-strain stiffness in Voigt notation, z vertical, Pa. sigma_xx = C11 e_xx + C13 e_zz, sigma_zz = C13 e_xx + C33 e_zz, sigma_xz = C55
+// gamma_xz.
 struct Elasticity {
   double C11 = 0.0;
   double C13 = 0.0;
@@ -34,10 +35,10 @@ struct Cohesion {
 };
 
 struct Material {
-  std::string name;  // of the table, or "custom"
+  std::string name;      // of the table, or "custom"
   double density = 0.0;  // kg/m^3
   Elasticity elasticity;
-  std::optional<double> young;    // as given; canonical text prints young and poisson instead of C where they were given
+  std::optional<double> young;  // as given; canonical text prints young and poisson instead of C where they were given
   std::optional<double> poisson;
   std::optional<Plasticity> plasticity;  // isotropic materials only
   double Gc = 0.0;                       // J/m^2

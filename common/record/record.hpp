@@ -13,31 +13,32 @@ namespace fracfarm {
 
 // Phase field on the nodes of a regular grid; index = row * columns + column, row 0 at the bottom, float as it is stored.
 struct PhaseFieldFrames {
-  std::vector<double> x;  // m
-  std::vector<double> z;  // m
-  std::vector<double> time;                      // s, one a frame, the first at 0
-  std::vector<std::vector<float>> psi;           // one field a frame
+  std::vector<double> x;                // m
+  std::vector<double> z;                // m
+  std::vector<double> time;             // s, one a frame, the first at 0
+  std::vector<std::vector<float>> psi;  // one field a frame
   std::vector<float> psi_initial;
-  std::vector<float> psi_failure;                // at time_to_failure, or the last state where there is none
-  std::vector<unsigned char> mask_initial;       // 1 on held nodes
+  std::vector<float> psi_failure;           // at time_to_failure, or the last state where there is none
+  std::vector<unsigned char> mask_initial;  // 1 on held nodes
 };
 
 struct Record {
-  std::string key;              // of the job: SHA-256 of canonical scene and solver build
+  std::string key;  // of the job: SHA-256 of canonical scene and solver build
   std::string canonical_scene;
   std::string method;
-  std::string material;         // name, or "layers"
+  std::string material;            // name, or "layers"
   std::string boundary_condition;  // uniaxial, biaxial, or "scene"
   std::uint64_t sample_id = 0;     // 0: not of a campaign
   std::uint64_t pattern_seed = 0;
   Judgement judgement;
   std::vector<FailureTime> failure_times;
-  double peak_stress = 0.0;  // Pa
+  double peak_stress = 0.0;     // Pa
   std::vector<Segment> cracks;  // as drawn
   PhaseFieldFrames phase_field;
   Series series;
   double energy_residual = 0.0;  // worst |residual| over max external work
-  std::map<std::string, std::string> provenance;  // build id, compiler, flags, CPU, library versions, settings, wall and CPU seconds, peak memory, attempt, kernel
+  std::map<std::string, std::string>
+      provenance;  // build id, compiler, flags, CPU, library versions, settings, wall and CPU seconds, peak memory, attempt, kernel
 };
 
 }  // namespace fracfarm

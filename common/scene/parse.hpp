@@ -28,7 +28,8 @@ std::string_view name_of(Side side);
 // "pbx", or "layers" where there is more than one.
 std::string material_name(const Scene& scene);
 
-// Conditions that the scene page allows but a user should know of, one sentence each: w_0/h < 1, nu -> 1/2, cracks closer than 4 w_0, dt near the edge.
+// Conditions that the scene page allows but a user should know of, one sentence each: w_0/h < 1, nu -> 1/2, cracks closer than 4 w_0, dt
+// near the edge.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
 }  // namespace fracfarm

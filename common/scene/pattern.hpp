@@ -19,7 +19,7 @@ struct PatternSettings {
   double length_max = 0.05;  // m
   int count_min = 3;         // of each of the two orthogonal sets; the oblique set draws 2 count_min ... 2 count_max
   int count_max = 15;
-  bool redraw = false;       // draw a crack again while its end lies outside; otherwise the part outside is dropped
+  bool redraw = false;  // draw a crack again while its end lies outside; otherwise the part outside is dropped
 };
 
 // The cracks as drawn and clipped to the domain. id counts from 1.

@@ -40,9 +40,9 @@ struct SideLoad {
   double to = 0.0;
   std::optional<double> normal_velocity;  // m/s; 0 holds the side
   Tangential tangential = Tangential::free;
-  double tangential_velocity = 0.0;                 // m/s along +x or +z
-  double ramp = 0.0;                                // s
-  std::optional<std::array<double, 2>> traction;    // Pa, (x, z)
+  double tangential_velocity = 0.0;               // m/s along +x or +z
+  double ramp = 0.0;                              // s
+  std::optional<std::array<double, 2>> traction;  // Pa, (x, z)
 };
 
 struct Initial {
@@ -65,8 +65,8 @@ struct PhaseFieldSettings {
   LengthScale length_scale;
   double residual_stiffness = 1e-6;  // eta
   CrackSeeding crack_seeding = CrackSeeding::slot;
-  double cfl = 0.9;                  // of h / sqrt((C_max + C55) / rho)
-  std::optional<double> dt;          // s, instead of cfl
+  double cfl = 0.9;          // of h / sqrt((C_max + C55) / rho)
+  std::optional<double> dt;  // s, instead of cfl
   PlasticityModel plasticity = PlasticityModel::secant;
 };
 
@@ -80,8 +80,8 @@ struct Sample {
 
 struct Scene {
   Method method = Method::phase_field;
-  double width = 0.25;   // m
-  double height = 0.25;  // m
+  double width = 0.25;        // m
+  double height = 0.25;       // m
   std::vector<Layer> layers;  // at least one
   std::vector<Segment> cracks;
   std::array<std::vector<SideLoad>, 4> loads;  // by Side; empty: free

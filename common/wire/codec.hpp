@@ -1,4 +1,5 @@
-// Messages to MessagePack bytes and back. Decoding never throws or over-allocates, whatever the bytes; unknown versions are refused in words.
+// Messages to MessagePack bytes and back. Decoding never throws or over-allocates, whatever the bytes; unknown versions are refused in
+// words.
 #pragma once
 
 #include <string>

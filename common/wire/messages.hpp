@@ -24,7 +24,7 @@ struct LeaseId {
 
 struct HeldLease {
   LeaseId lease;
-  std::string key;      // of the job
+  std::string key;  // of the job
   long long step = 0;
 };
 
@@ -33,7 +33,7 @@ struct Hello {
   std::string instance;  // one id for each start of the daemon
   int slots = 1;
   std::uint64_t memory_bytes = 0;
-  std::string build_id;  // of the solver
+  std::string build_id;       // of the solver
   double remaining_s = -1.0;  // of the allocation; < 0: unlimited
   std::vector<HeldLease> held;
 };
@@ -57,8 +57,8 @@ struct Completion {
   long long steps = 0;
   double cpu_s = 0.0;
   double wall_s = 0.0;
-  std::string shard;          // file name in the store
-  std::uint64_t offset = 0;   // of the record's bytes in the shard
+  std::string shard;         // file name in the store
+  std::uint64_t offset = 0;  // of the record's bytes in the shard
   std::uint64_t length = 0;
   std::string sha256;
 };
@@ -93,7 +93,7 @@ struct Assignment {
 };
 
 struct Jobs {
-  std::vector<Receipt> receipts;         // for Next::completed, then Next::failed, in order
+  std::vector<Receipt> receipts;  // for Next::completed, then Next::failed, in order
   std::vector<Assignment> assignments;
   Order order = Order::none;
   double wait_s = 0.0;  // ask again after this where nothing was assigned
@@ -115,8 +115,8 @@ struct ByeReply {};
 
 // A client verb: the coordinator answers as JSON, `exit_code` as the verb should end.
 struct Ask {
-  std::string verb;      // of the table of requests
-  std::string arguments; // JSON text
+  std::string verb;       // of the table of requests
+  std::string arguments;  // JSON text
 };
 struct Answer {
   int exit_code = 0;

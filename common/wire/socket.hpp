@@ -1,4 +1,5 @@
-// The only door to ZeroMQ. Server: ROUTER (mandatory, no handover) with CURVE and a supervised ZAP thread. Client: DEALER, one request at a time.
+// The only door to ZeroMQ. Server: ROUTER (mandatory, no handover) with CURVE and a supervised ZAP thread. Client: DEALER, one request at a
+// time.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +32,7 @@ class Server {
   // Waits up to timeout_s for the first message, then takes what is there, at most `max`. Over-long messages are dropped and counted.
   std::vector<Incoming> receive(std::size_t max, double timeout_s);
   bool send(const std::string& route, std::string_view bytes);  // false: the peer is gone or its queue is full
-  bool healthy() const;  // false where the ZAP thread has ended; the owner must stop
+  bool healthy() const;                                         // false where the ZAP thread has ended; the owner must stop
 
  private:
   struct Impl;

@@ -22,7 +22,8 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
 int report_problems(const Problems& problems, std::string_view what, bool json) {
   if (json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const Problem& p : problems) list.push_back({{"key", p.key}, {"value", p.value}, {"limit", p.limit}, {"suggestion", p.suggestion}});
+    for (const Problem& p : problems)
+      list.push_back({{"key", p.key}, {"value", p.value}, {"limit", p.limit}, {"suggestion", p.suggestion}});
     const nlohmann::json body{{"schema", "fracfarm.problems/1"}, {"what", what}, {"problems", list}};
     fmt::print("{}\n", body.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return exit_bad_input;
