@@ -15,6 +15,7 @@ struct Elasticity {
   double C13 = 0.0;
   double C33 = 0.0;
   double C55 = 0.0;
+  bool operator==(const Elasticity&) const = default;
 };
 
 // Isotropic plane strain from Young's modulus (Pa) and Poisson's ratio: C11 = lambda + 2 mu, C13 = lambda, C55 = mu.
@@ -23,6 +24,7 @@ Elasticity isotropic(double young, double poisson);
 struct Plasticity {
   double yield = 0.0;      // sigma_y, Pa (von Mises)
   double hardening = 0.0;  // H_m, Pa
+  bool operator==(const Plasticity&) const = default;
 };
 
 // Joint properties of FDEM (starred rows of Table 1).
@@ -32,6 +34,7 @@ struct Cohesion {
   double shear_strength = 0.0;    // f_s, Pa
   double GI = 0.0;                // J/m^2
   double GII = 0.0;               // J/m^2
+  bool operator==(const Cohesion&) const = default;
 };
 
 struct Material {
@@ -45,6 +48,7 @@ struct Material {
   double characteristic_width = 0.0;     // m; the text's 2 w_0
   std::optional<Cohesion> cohesion;
   double default_horizon = 1.0e-3;  // s, phase field, CENSORED after it
+  bool operator==(const Material&) const = default;
 };
 
 // Table 1 in the order pbx, shale, tungsten, aluminum, steel, and pbx5 (pbx with f_t = 5 MPa and f_s = 20 MPa).
