@@ -14,6 +14,7 @@
 namespace fracfarm {
 
 inline constexpr std::string_view task_schema = "fracfarm.task/1";
+inline constexpr std::string_view summary_schema = "fracfarm.summary/1";
 
 // Worker -> child: solve this. Closing the pipe ends the child; SIGTERM makes it checkpoint, report `stopped` and end.
 struct Task {
