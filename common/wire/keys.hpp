@@ -1,4 +1,5 @@
-// CURVE keys of a farm: DIR/keys/server.json, DIR/keys/allowed/<name>.pub, and <name>.key (mode 0600) beside it. Made on first use.
+// CURVE keys of a farm, made on first use: DIR/keys (mode 0700) has <name>.key (the pair, mode 0600), server.pub, and allowed/<name>.pub
+// for everyone who may connect. Revoking a peer is removing its .pub; it is never made again beside an existing .key.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +16,10 @@ struct KeyPair {
   std::string secret_key;
 };
 
-// The pair of this name in the farm folder, made and stored durably where it does not exist. Names: [a-z0-9._-]{1,64}.
+bool is_key_name(const std::string& name);  // [a-z0-9._-]{1,64}, not starting with a dot
+
+// The pair of this name in the farm folder, made and stored durably where it does not exist.
+// Errors: BAD_REQUEST for a bad name, a key that others can read or one that is no key; NODE_LOST where the disk refuses.
 Result<KeyPair> load_or_make_key(const std::filesystem::path& farm, const std::string& name);
 Result<std::string> server_public_key(const std::filesystem::path& farm);
 
@@ -23,7 +27,7 @@ struct AllowedKey {
   std::string name;
   std::string public_key;
 };
-// Every public key that may connect now; read again at each unknown key, so that revoking one is removing its file.
+// Every public key that may connect now; those that are no key are left out.
 std::vector<AllowedKey> allowed_keys(const std::filesystem::path& farm);
 
 }  // namespace fracfarm::wire

@@ -79,7 +79,10 @@ struct Next {
   double remaining_s = -1.0;
 };
 
+// wait: nothing now, ask again after wait_s. drain: finish what you hold, take no more, BYE, end.
+// stop: nothing is left in the ledger; a worker started with --once ends, a daemon asks again after wait_s.
 enum class Order { none, wait, drain, stop };
+// What became of a result. All four mean that the worker may forget it; refused is logged by both sides.
 enum class Receipt { accepted, duplicate, stale, refused };
 
 struct Assignment {
@@ -90,6 +93,7 @@ struct Assignment {
   std::string scene;  // canonical text
   double wall_budget_s = 8.0 * 3600.0;
   double step_scale = 1.0;
+  std::string store;  // folder of the shards; relative: below the farm folder; empty: "store"
 };
 
 struct Jobs {

@@ -2,10 +2,12 @@
 // time.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.hpp"
@@ -18,6 +20,13 @@ struct Incoming {
   std::string route;  // routing id: where to answer, never who it is
   std::string peer;   // authenticated name of the key (ZAP user id)
   std::string bytes;
+};
+
+// Counts of what was thrown away unread, for status.
+struct ServerCounts {
+  std::uint64_t odd_frames = 0;    // not one frame, or of an unauthenticated peer
+  std::uint64_t unsendable = 0;    // replies to peers that were gone or did not read
+  std::uint64_t unknown_keys = 0;  // refused handshakes
 };
 
 class Server {
@@ -33,6 +42,7 @@ class Server {
   std::vector<Incoming> receive(std::size_t max, double timeout_s);
   bool send(const std::string& route, std::string_view bytes);  // false: the peer is gone or its queue is full
   bool healthy() const;                                         // false where the ZAP thread has ended; the owner must stop
+  ServerCounts counts() const;
 
  private:
   struct Impl;
@@ -42,6 +52,7 @@ class Server {
 
 class Client {
  public:
+  // Never waits for the coordinator to be there. The endpoint is read again from DIR/endpoint.json, where there is one, at each reconnect.
   static Result<Client> connect(const std::string& endpoint, const std::filesystem::path& farm, const KeyPair& own);
   ~Client();
   Client(Client&&) noexcept;
@@ -53,6 +64,8 @@ class Client {
   // In two halves, for a loop that must also watch its children: post never blocks; poll gives the reply to the last post, if it is there.
   Result<void> post(const Request& request);
   Result<std::optional<Reply>> poll(double timeout_s);
+  int descriptor() const;       // for poll(2); edge-triggered: call poll(0) before waiting on it. Changes at reconnect.
+  std::uint64_t epoch() const;  // that DIR/endpoint.json stated at the last (re)connect, 0 where there was none
 
  private:
   struct Impl;

@@ -1,0 +1,30 @@
+#include "common/wire/endpoint.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/atomic_file.hpp"
+
+namespace fracfarm::wire {
+
+using nlohmann::json;
+
+Result<void> write_endpoint(const std::filesystem::path& farm, const Endpoint& endpoint) {
+  const json body{{"endpoint", endpoint.endpoint}, {"epoch", endpoint.epoch}, {"pid", endpoint.pid}};
+  return write_atomically(farm / "endpoint.json", body.dump(2) + "\n");
+}
+
+Result<Endpoint> read_endpoint(const std::filesystem::path& farm) {
+  const std::filesystem::path path = farm / "endpoint.json";
+  std::error_code none;
+  if (!std::filesystem::exists(path, none))
+    return fail(Fault::node_lost, "no coordinator has run in " + farm.string() + " (no endpoint.json)");
+  const auto text = read_file(path, 4096);
+  if (!text) return tl::unexpected(text.error());
+  const json body = json::parse(*text, nullptr, false);
+  const bool sound = body.is_object() && body.contains("endpoint") && body["endpoint"].is_string() && body.contains("epoch") &&
+                     body["epoch"].is_number_unsigned() && body.contains("pid") && body["pid"].is_number_integer();
+  if (!sound) return fail(Fault::node_lost, path.string() + " is not what a coordinator writes; start the coordinator again");
+  return Endpoint{body["endpoint"].get<std::string>(), body["epoch"].get<std::uint64_t>(), body["pid"].get<long long>()};
+}
+
+}  // namespace fracfarm::wire

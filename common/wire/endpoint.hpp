@@ -1,0 +1,24 @@
+// Where the coordinator of a farm answers: DIR/endpoint.json, written by the coordinator at each start, read again by everyone else at each
+// reconnect, because the port may change.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "common/base/result.hpp"
+
+namespace fracfarm::wire {
+
+struct Endpoint {
+  std::string endpoint;  // tcp://host:port
+  std::uint64_t epoch = 0;
+  long long pid = 0;
+  bool operator==(const Endpoint&) const = default;
+};
+
+Result<void> write_endpoint(const std::filesystem::path& farm, const Endpoint& endpoint);
+// Errors: NODE_LOST where there is none ("no coordinator has run here") or it cannot be read.
+Result<Endpoint> read_endpoint(const std::filesystem::path& farm);
+
+}  // namespace fracfarm::wire

@@ -1,0 +1,13 @@
+// Text that crosses the wire: valid UTF-8, bounded, no control characters.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace fracfarm::wire {
+
+bool is_utf8(std::string_view text);
+// The text with invalid bytes and control characters (other than newline) as '?', clipped to `limit` bytes at a whole character.
+std::string clean_text(std::string_view text, std::size_t limit);
+
+}  // namespace fracfarm::wire
