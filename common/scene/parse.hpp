@@ -11,11 +11,13 @@ namespace fracfarm {
 
 inline constexpr std::string_view scene_schema = "fracfarm.scene/1";
 
-// JSON text -> Scene with every default filled in and every limit checked. Never throws, whatever the bytes.
+// JSON text -> Scene with every default filled in and every limit checked. Never throws, whatever the bytes. Defaults that the scene page
+// leaves open: frame_interval 5 us; a horizon of the material, of several the longest; sides without a load are free.
 Parsed<Scene> parse_scene(std::string_view json_text);
 
 // The canonical text: the whole scene as compact JSON, sorted keys, shortest round-trip numbers, defaults written out.
-// parse_scene(canonical_text(s)) gives s back, and its canonical text is the same bytes.
+// parse_scene(canonical_text(s)) gives s back, and its canonical text is the same bytes. Materials of the table stand by name (the build id
+// pins the table); `plasticity` is `none` wherever no layer yields, which is what `secant` means there.
 std::string canonical_text(const Scene& scene);
 
 // SHA-256 (hex) of the canonical text and the solver's build id: the identity of a job.

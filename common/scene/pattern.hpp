@@ -2,8 +2,12 @@
 // A sample's pattern never depends on which others were drawn.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/result.hpp"
@@ -22,21 +26,43 @@ struct PatternSettings {
   bool redraw = false;  // draw a crack again while its end lies outside; otherwise the part outside is dropped
 };
 
-// The cracks as drawn and clipped to the domain. id counts from 1.
+// Why no pattern can be drawn with these settings; empty where one can.
+Problems check(const PatternSettings& settings);
+
+// The cracks as drawn, clipped to the domain: horizontal ones first, then vertical ones, each set in the order of its draws. check() must
+// be empty, ids count from 1.
 std::vector<Segment> draw_pattern(CrackSet set, std::uint64_t campaign_seed, std::uint64_t id, const PatternSettings& settings = {});
 
-// The part of a segment inside [0,width] x [0,height]; false where none is (zero length counts as none).
+// The part of a segment inside [0,width] x [0,height]; false where none is (zero length counts as none). Clipping twice changes no bit
+// more.
 bool clip(Segment& segment, double width, double height);
 
-// "uniaxial": 1 m/s outward on top and bottom, sides free; "biaxial": on all four. Empty result for other names.
+// "uniaxial": 1 m/s outward on top and bottom, sides free; "biaxial": on all four. Everywhere free along the side.
 struct NamedLoad {
   std::string_view name;
   bool horizontal;  // left and right move too
 };
 inline constexpr std::array<NamedLoad, 2> named_loads{{{"uniaxial", false}, {"biaxial", true}}};
+const NamedLoad* find_load(std::string_view name);  // nullptr where there is none
 
-// The scene of one sample of a dataset: pattern, material, load and defaults; what `fracfarm scene` prints.
-Scene sample_scene(const Material& material, const NamedLoad& load, CrackSet set, std::uint64_t campaign_seed, std::uint64_t id,
-                   const PatternSettings& settings = {});
+// Which sample of a dataset.
+struct SampleChoice {
+  const Material* material = nullptr;
+  const NamedLoad* load = nullptr;
+  CrackSet set = CrackSet::orthogonal;
+  std::uint64_t seed = 0;  // of the campaign
+  std::uint64_t id = 1;
+};
+
+// The scene of one sample: pattern, material, load and defaults; what `fracfarm scene` prints.
+Scene sample_scene(const SampleChoice& choice, const PatternSettings& settings = {});
+
+// A scene key (dotted, as phase_field.cfl) and its value as JSON text.
+using Setting = std::pair<std::string, std::string>;
+
+// The same with scene keys set over it, then read by the scene grammar: problems name the settings' keys. A key below `material` turns the
+// table row into an object of its properties first; domain.width and domain.height are where the pattern is drawn, too. What names the
+// sample (schema, method, sample) cannot be set.
+Parsed<Scene> sample_scene_with(const SampleChoice& choice, PatternSettings settings, std::span<const Setting> over);
 
 }  // namespace fracfarm

@@ -21,12 +21,14 @@ struct Segment {
   double z0 = 0.0;
   double x1 = 0.0;
   double z1 = 0.0;
+  bool operator==(const Segment&) const = default;
 };
 
 // Horizontal layers from the bottom up; `below` is the layer's top (m), the last one reaches the domain's top.
 struct Layer {
   double below = 0.0;
   Material material;
+  bool operator==(const Layer&) const = default;
 };
 
 enum class Side { left, right, bottom, top };
@@ -43,11 +45,13 @@ struct SideLoad {
   double tangential_velocity = 0.0;               // m/s along +x or +z
   double ramp = 0.0;                              // s
   std::optional<std::array<double, 2>> traction;  // Pa, (x, z)
+  bool operator==(const SideLoad&) const = default;
 };
 
 struct Initial {
   std::array<double, 3> strain{};             // xx, zz, xz (tensor shear)
   std::array<double, 4> velocity_gradient{};  // dvx/dx dvx/dz dvz/dx dvz/dz, about the domain's centre
+  bool operator==(const Initial&) const = default;
 };
 
 enum class Stop { failure, horizon };
@@ -57,6 +61,7 @@ enum class PlasticityModel { none, secant };
 struct LengthScale {
   enum class Kind { half, full, metres } kind = Kind::half;
   double metres = 0.0;
+  bool operator==(const LengthScale&) const = default;
 };
 
 struct PhaseFieldSettings {
@@ -68,6 +73,7 @@ struct PhaseFieldSettings {
   double cfl = 0.9;          // of h / sqrt((C_max + C55) / rho)
   std::optional<double> dt;  // s, instead of cfl
   PlasticityModel plasticity = PlasticityModel::secant;
+  bool operator==(const PhaseFieldSettings&) const = default;
 };
 
 // Where a scene of a campaign came from; identification only, the cracks say what is solved.
@@ -76,6 +82,7 @@ struct Sample {
   std::uint64_t seed = 0;  // campaign seed
   std::uint64_t id = 0;    // from 1
   std::string load;        // uniaxial, biaxial
+  bool operator==(const Sample&) const = default;
 };
 
 struct Scene {
@@ -93,6 +100,7 @@ struct Scene {
   std::optional<Sample> sample;
 
   const std::vector<SideLoad>& on(Side side) const { return loads[static_cast<std::size_t>(side)]; }
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace fracfarm

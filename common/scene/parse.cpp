@@ -1,0 +1,253 @@
+// The grammar of a scene file, block by block; one line a key. What needs several keys at once is checked after all of them are read.
+#include "common/scene/parse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/base/text.hpp"
+#include "common/scene/json_text.hpp"
+#include "common/scene/parse_parts.hpp"
+#include "common/scene/pattern.hpp"
+
+namespace fracfarm {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_cracks = 10'000;
+constexpr std::uint64_t max_nodes = 4'000'000;
+constexpr double max_frames = 10'000;
+constexpr double max_stored_values = 1e9;  // nodes times frames, 4 GB as float
+constexpr double max_steps = 1e8;
+constexpr double default_frame_interval = 5.0e-6;  // s; the published dataset's own by its file sizes
+constexpr double max_cfl = 1.2;                    // past the edge, so that a test can show the instability
+constexpr double max_aspect = 10.0;                // of a cell
+
+void read_domain(Fields& top, Scene& scene) {
+  const json* value = top.value("domain");
+  if (!value) return;
+  Fields fields(*value, "domain", top.problems());
+  fields.require({"width", "height"});
+  fields.number("width", {1e-6, 1e3, "m"}, scene.width);
+  fields.number("height", {1e-6, 1e3, "m"}, scene.height);
+  fields.done();
+}
+
+void read_crack(const json& row, const std::string& path, Scene& scene, ProblemList& problems) {
+  std::array<double, 4> ends{};
+  if (!read_numbers(row, path, {-1e4, 1e4, "m"}, ends, problems)) return;
+  Segment crack{.x0 = ends[0], .z0 = ends[1], .x1 = ends[2], .z1 = ends[3]};
+  if (crack.x0 == crack.x1 && crack.z0 == crack.z1)
+    problems.add(path, printed(row), "two different ends", "remove the row");
+  else if (clip(crack, scene.width, scene.height))
+    scene.cracks.push_back(crack);
+}
+
+void read_cracks(Fields& top, Scene& scene) {
+  const json* value = top.value("cracks");
+  if (!value) return;
+  if (!value->is_array() || value->size() > max_cracks) {
+    top.problems().add("cracks", printed(*value), fmt::format("a list of at most {} rows [x0, z0, x1, z1] in metres", max_cracks));
+    return;
+  }
+  for (std::size_t i = 0; i < value->size(); ++i) read_crack((*value)[i], key_path("cracks", i), scene, top.problems());
+}
+
+void read_loads(Fields& top, Scene& scene) {
+  const json* value = top.value("loads");
+  if (!value) return;
+  Fields fields(*value, "loads", top.problems());
+  for (const auto& [name, side] : side_words)
+    if (const json* load = fields.value(name))
+      scene.loads[static_cast<std::size_t>(side)] = read_side(*load, fields.path(name), side_length(scene, side), top.problems());
+  fields.done();
+}
+
+void read_initial(Fields& top, Scene& scene) {
+  const json* value = top.value("initial");
+  if (!value) return;
+  Fields fields(*value, "initial", top.problems());
+  if (const json* strain = fields.value("strain"))
+    read_numbers(*strain, fields.path("strain"), {-0.1, 0.1, ""}, scene.initial.strain, top.problems());
+  if (const json* gradient = fields.value("velocity_gradient"))
+    read_numbers(*gradient, fields.path("velocity_gradient"), {-1e9, 1e9, "1/s"}, scene.initial.velocity_gradient, top.problems());
+  fields.done();
+}
+
+// Absent times stay 0 here; fill_times() knows the materials.
+void read_time(Fields& top, Scene& scene) {
+  const json* value = top.value("time");
+  if (!value) return;
+  Fields fields(*value, "time", top.problems());
+  fields.number("horizon", {0.0, 1e6, "s", true}, scene.horizon);
+  fields.number("frame_interval", {0.0, 1e6, "s", true}, scene.frame_interval);
+  fields.word("stop", stop_words, scene.stop);
+  fields.done();
+}
+
+void fill_times(Scene& scene) {
+  if (scene.horizon == 0.0)
+    for (const Layer& layer : scene.layers) scene.horizon = std::max(scene.horizon, layer.material.default_horizon);
+  if (scene.frame_interval == 0.0) scene.frame_interval = default_frame_interval;
+}
+
+void read_cells(Fields& fields, PhaseFieldSettings& settings) {
+  const json* value = fields.value("cells");
+  if (!value) return;
+  if (!value->is_array() || value->size() != 2) {
+    fields.problems().add(fields.path("cells"), printed(*value), "a list of 2 integers: across and up");
+    return;
+  }
+  std::array<int*, 2> targets{&settings.cells_x, &settings.cells_z};
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const auto count = read_integer((*value)[i], key_path(fields.path("cells"), i), 1, 100'000, fields.problems()))
+      *targets[i] = static_cast<int>(*count);
+}
+
+void read_length_scale(Fields& fields, LengthScale& scale) {
+  const json* value = fields.value("length_scale");
+  if (!value) return;
+  if (value->is_number()) {
+    scale.kind = LengthScale::Kind::metres;
+    fields.number("length_scale", {0.0, 1e3, "m", true}, scale.metres);
+    return;
+  }
+  for (const auto& [name, kind] : length_scale_words)
+    if (*value == name) {
+      scale.kind = kind;
+      return;
+    }
+  fields.problems().add(fields.path("length_scale"), printed(*value), "half | full | a number of metres above 0");
+}
+
+void read_phase_field(Fields& top, Scene& scene) {
+  const json* value = top.value("phase_field");
+  if (!value) return;
+  Fields fields(*value, "phase_field", top.problems());
+  PhaseFieldSettings& settings = scene.phase_field;
+  read_cells(fields, settings);
+  read_length_scale(fields, settings.length_scale);
+  fields.number("residual_stiffness", {0.0, 0.1, ""}, settings.residual_stiffness);
+  fields.word("crack_seeding", seeding_words, settings.crack_seeding, {"history", "nodes"});
+  fields.only("integrator", "explicit", {"newmark"});
+  fields.number("cfl", {0.0, max_cfl, "", true}, settings.cfl);
+  fields.number("dt", {0.0, 1e3, "s", true}, settings.dt);
+  fields.only("quadrature", "gll", {"gauss"});
+  fields.only("split", "seed", {"none", "spectral", "volumetric_deviatoric", "star_convex"});
+  fields.word("plasticity", plasticity_words, settings.plasticity, {"j2"});
+  fields.only("precision", "double", {"float"});
+  if (fields.has("cfl") && fields.has("dt"))
+    top.problems().add(fields.path("dt"), "given with cfl", "one of the two", "remove phase_field.cfl to set the step in seconds");
+  fields.done();
+}
+
+// Another method's block may stand beside the chosen one; its keys must be the format's, its values are not this scene's.
+void check_fdem_block(Fields& top) {
+  const json* value = top.value("fdem");
+  if (!value) return;
+  Fields fields(*value, "fdem", top.problems());
+  fields.allow({"element_size", "tier", "softening", "mesh_seed", "mesh_file"});
+  fields.done();
+}
+
+void read_sample(Fields& top, Scene& scene) {
+  const json* value = top.value("sample");
+  if (!value) return;
+  Sample sample;
+  Fields fields(*value, "sample", top.problems());
+  fields.require({"set", "seed", "id", "load"});
+  fields.word("set", crack_set_words, sample.set);
+  fields.integer("seed", 0, UINT64_MAX, sample.seed);
+  fields.integer("id", 1, UINT64_MAX, sample.id);
+  std::array<Word<std::string_view>, named_loads.size()> loads;
+  for (std::size_t i = 0; i < loads.size(); ++i) loads[i] = {named_loads[i].name, named_loads[i].name};
+  std::string_view load;
+  if (fields.word("load", loads, load)) sample.load = load;
+  fields.done();
+  scene.sample = sample;
+}
+
+// The rest needs several keys, and is worth saying only of a scene whose keys are right.
+void check_grid(const Scene& scene, ProblemList& problems) {
+  const PhaseFieldSettings& settings = scene.phase_field;
+  const std::uint64_t nodes = (static_cast<std::uint64_t>(settings.cells_x) + 1) * (static_cast<std::uint64_t>(settings.cells_z) + 1);
+  if (nodes > max_nodes)
+    problems.add("phase_field.cells", fmt::format("[{},{}]", settings.cells_x, settings.cells_z),
+                 fmt::format("at most {} nodes", max_nodes));
+  const double hx = scene.width / settings.cells_x, hz = scene.height / settings.cells_z;
+  if (std::max(hx, hz) > max_aspect * std::min(hx, hz))
+    problems.add("phase_field.cells", fmt::format("cells of {} by {} m", shortest(hx), shortest(hz)),
+                 fmt::format("cells at most {} times as long as wide", shortest(max_aspect)),
+                 fmt::format("squares need [{}, {}]", settings.cells_x, std::max(1LL, std::llround(scene.height / hx))));
+  const double frames = std::floor(scene.horizon / scene.frame_interval) + 1;
+  if (frames > max_frames || frames * static_cast<double>(nodes) > max_stored_values)
+    problems.add("time.frame_interval", shortest(scene.frame_interval),
+                 fmt::format("at most {} frames, and at most {} node values in all", shortest(max_frames), shortest(max_stored_values)),
+                 "a longer interval or a shorter horizon");
+}
+
+void check_step(const Scene& scene, ProblemList& problems) {
+  const double edge = step_edge(scene);
+  const double dt = scene.phase_field.dt.value_or(scene.phase_field.cfl * edge);
+  if (dt > max_cfl * edge)
+    problems.add("phase_field.dt", shortest(dt),
+                 fmt::format("at most {} s, which is {} h / sqrt((C_max + C55) / rho)", shortest(max_cfl * edge), max_cfl));
+  if (scene.horizon / dt > max_steps)
+    problems.add("time.horizon", shortest(scene.horizon), fmt::format("at most {} steps of {} s", shortest(max_steps), shortest(dt)));
+}
+
+}  // namespace
+
+double step_edge(const Scene& scene) {
+  double fastest = 0.0;
+  for (const Layer& layer : scene.layers) {
+    const Elasticity& c = layer.material.elasticity;
+    fastest = std::max(fastest, (std::max(c.C11, c.C33) + c.C55) / layer.material.density);
+  }
+  return std::min(scene.width / scene.phase_field.cells_x, scene.height / scene.phase_field.cells_z) / std::sqrt(fastest);
+}
+
+PlasticityModel effective_plasticity(const Scene& scene) {
+  const bool yields =
+      std::any_of(scene.layers.begin(), scene.layers.end(), [](const Layer& layer) { return layer.material.plasticity.has_value(); });
+  return yields ? scene.phase_field.plasticity : PlasticityModel::none;
+}
+
+Parsed<Scene> scene_from_json(const json& file) {
+  ProblemList problems;
+  Scene scene;
+  Fields top(file, "", problems);
+  top.require({"method", "domain", "material"});
+  top.only("schema", scene_schema);  // a file without it is of the first version
+  top.word("method", method_words, scene.method, {"fdem", "drill"});
+  read_domain(top, scene);
+  read_phase_field(top, scene);
+  if (const json* material = top.value("material"))
+    scene.layers = read_layers(*material, scene.height, scene.phase_field.length_scale.kind != LengthScale::Kind::metres, problems);
+  read_cracks(top, scene);
+  read_loads(top, scene);
+  read_initial(top, scene);
+  read_time(top, scene);
+  check_fdem_block(top);
+  read_sample(top, scene);
+  top.done();
+  if (!problems.empty()) return tl::unexpected(problems.take());
+
+  fill_times(scene);
+  scene.phase_field.plasticity = effective_plasticity(scene);
+  check_grid(scene, problems);
+  check_step(scene, problems);
+  if (!problems.empty()) return tl::unexpected(problems.take());
+  return scene;
+}
+
+Parsed<Scene> parse_scene(std::string_view json_text) {
+  Parsed<json> file = read_json(json_text, "scene");
+  if (!file) return tl::unexpected(std::move(file.error()));
+  return scene_from_json(*file);
+}
+
+}  // namespace fracfarm
