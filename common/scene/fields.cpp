@@ -24,11 +24,15 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 }  // namespace
 
 void ProblemList::add(std::string key, std::string value, std::string limit, std::string suggestion) {
-  if (problems_.size() >= max_problems) {
+  const auto same = [&](const Problem& p) { return p.key == key && p.value == value && p.limit == limit; };
+  if (problems_.size() < max_problems && std::none_of(problems_.begin(), problems_.end(), same))
+    problems_.push_back({std::move(key), std::move(value), std::move(limit), std::move(suggestion)});
+  else if (problems_.size() >= max_problems)
     ++dropped_;
-    return;
-  }
-  problems_.push_back({std::move(key), std::move(value), std::move(limit), std::move(suggestion)});
+}
+
+void ProblemList::add(const Problems& others) {
+  for (const Problem& p : others) add(p.key, p.value, p.limit, p.suggestion);
 }
 
 Problems ProblemList::take() {

@@ -15,12 +15,12 @@
 
 namespace fracfarm {
 
-// Mistakes as they are found; keeps the first hundred and counts the rest.
+// Mistakes as they are found, each once; keeps the first hundred and counts the rest.
 class ProblemList {
  public:
   void add(std::string key, std::string value, std::string limit, std::string suggestion = {});
+  void add(const Problems& others);
   bool empty() const { return problems_.empty(); }
-  std::size_t count() const { return problems_.size() + dropped_; }
   Problems take();
 
  private:

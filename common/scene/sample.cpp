@@ -89,21 +89,27 @@ Scene sample_scene(const SampleChoice& choice, const PatternSettings& settings) 
 Parsed<Scene> sample_scene_with(const SampleChoice& choice, PatternSettings settings, std::span<const Setting> over) {
   assert(choice.material && choice.load && choice.id > 0);
   ProblemList problems;
-  std::vector<json> values;
+  std::vector<std::pair<const Setting*, json>> values;
   for (const Setting& setting : over) {
     Parsed<json> value = read_json(setting.second, setting.first);
-    if (!value) problems.add(setting.first, setting.second, "a JSON value");
-    if (!settable(setting.first)) problems.add(setting.first, setting.second, "any scene key but schema, method and sample");
-    values.push_back(value ? std::move(*value) : json());
-    follow_domain(setting, values.back(), settings);
+    if (!value)
+      problems.add(setting.first, setting.second, "a JSON value");
+    else if (!settable(setting.first))
+      problems.add(setting.first, setting.second, "any scene key but schema, method and sample");
+    else
+      values.emplace_back(&setting, std::move(*value));
   }
-  for (Problem& problem : check(settings)) problems.add(problem.key, problem.value, problem.limit, problem.suggestion);
-  if (!problems.empty()) return tl::unexpected(problems.take());
+  PatternSettings asked = settings;
+  for (const auto& [setting, value] : values) follow_domain(*setting, value, asked);
+  problems.add(check(asked));
+  if (problems.empty()) settings = asked;  // else go on with a pattern that can be drawn, to find what else is wrong
 
   json scene = sample_json(choice, settings);
-  for (std::size_t i = 0; i < over.size(); ++i) set_key(choice, over[i], values[i], scene, problems);
+  for (const auto& [setting, value] : values) set_key(choice, *setting, value, scene, problems);
+  Parsed<Scene> made = scene_from_json(scene);
+  if (!made) problems.add(made.error());
   if (!problems.empty()) return tl::unexpected(problems.take());
-  return scene_from_json(scene);
+  return made;
 }
 
 }  // namespace fracfarm
