@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "common/scene/pattern.hpp"
 #include "common/scene/scene.hpp"
 
 namespace fracfarm {
@@ -28,8 +28,9 @@ struct JobBlock {
   Method method = Method::phase_field;
   std::vector<std::string> materials;
   std::vector<std::string> loads;
-  std::vector<IdRange> patterns;
-  std::vector<SettingAxis> set;
+  std::vector<IdRange> patterns;  // orthogonal ones first, ids ascending, none twice
+  std::vector<SettingAxis> set;   // by key
+  bool redraw = false;            // cracks that leave the domain are drawn again, not clipped
 };
 
 struct Campaign {
@@ -41,7 +42,8 @@ struct Campaign {
   std::string store = "store";  // relative paths are below the farm folder
 };
 
-// What one job is, before its scene is made. Pattern-major: all materials, loads and settings of a pattern come before the next pattern.
+// What one job is, before its scene is made. Pattern-major: all materials, loads and settings of a pattern come before the next pattern
+// (settings change fastest, the last axis first).
 struct JobSpec {
   std::size_t block = 0;
   Method method = Method::phase_field;
@@ -49,16 +51,17 @@ struct JobSpec {
   std::string load;
   CrackSet set = CrackSet::orthogonal;
   std::uint64_t sample_id = 0;
-  std::vector<std::pair<std::string, std::string>> settings;  // key, JSON text
+  std::vector<Setting> settings;  // one value of each axis
 };
 
 // Text of a campaign file, TOML or JSON (told apart by its first character). Reports every mistake with file:line where TOML knows it.
-// A setting is checked by making one scene of each block with each of its values.
+// Settings are checked by making the scene of every combination of values with each material and load of their block, once.
 Parsed<Campaign> parse_campaign(std::string_view text, std::string_view file_name);
 
 std::string canonical_text(const Campaign& campaign);  // compact JSON, sorted keys; parse_campaign of it gives the campaign back
 std::uint64_t job_count(const Campaign& campaign);
-JobSpec job_at(const Campaign& campaign, std::uint64_t index);  // index < job_count
-Scene scene_of(const Campaign& campaign, const JobSpec& job);
+JobSpec job_at(const Campaign& campaign, std::uint64_t index);             // index < job_count; the time does not depend on the index
+Scene scene_of(const Campaign& campaign, const JobSpec& job);              // of a campaign that parse_campaign gave
+Parsed<Scene> try_scene_of(const Campaign& campaign, const JobSpec& job);  // of one that is still being checked
 
 }  // namespace fracfarm
