@@ -1,0 +1,99 @@
+// The grammar of a record file: every dataset and attribute, stated once. Writer, reader, validator and tests walk these tables; a new
+// dataset is a row here. Types are little-endian; every dataset is chunked, shuffled, deflated and checksummed (empty ones are compact).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "common/record/content.hpp"
+#include "common/record/record.hpp"
+
+namespace fracfarm::grammar {
+
+inline constexpr std::string_view schema = "fracfarm.record/1";
+inline constexpr std::string_view conventions = "CF-1.10";
+inline constexpr std::string_view licence = "CC-BY-4.0";
+inline constexpr std::size_t total_limit = std::size_t{1} << 30;  // bytes of all datasets together, decoded
+inline constexpr std::size_t text_limit = std::size_t{1} << 24;   // bytes of one text
+inline constexpr std::size_t attribute_limit = 60000;             // bytes of one text attribute
+inline constexpr std::size_t name_limit = 64;                     // characters of a column, provenance key or rule
+inline constexpr std::size_t columns_limit = 256;                 // members of one group
+
+enum class Type { f4, f8, u1, text };
+
+// Bytes of one element; a text's width is the dataset's own.
+std::size_t width_of(Type type);
+
+// A dataset's content, in memory as in the file: row-major, little-endian, texts padded with NUL.
+struct Array {
+  Type type = Type::f8;
+  std::size_t width = 8;  // bytes of one element
+  std::vector<std::size_t> dims;
+  std::string bytes;
+
+  std::size_t count() const;  // product of dims
+  friend bool operator==(const Array&, const Array&) = default;
+};
+
+struct DatasetSpec {
+  std::string path;
+  Type type = Type::f8;
+  std::vector<std::string> dims;  // "/x": the dimension scale of that path; digits: that many; another word: any extent
+  std::string units;
+  std::string long_name;
+  std::string axis{};     // T, Z, Y, X of a coordinate, or empty
+  int mantissa_bits = 0;  // 0: all
+
+  bool is_scale() const { return dims.size() == 1 && dims.front() == path; }
+  std::vector<std::pair<std::string, std::string>> attributes() const;  // name and text, beside those of dimension scales
+};
+
+// What the datasets are taken from: a record and the outcome of its rules.
+struct View {
+  const Record& record;
+  std::span<const ContentCheck> checks;
+};
+
+// A dataset that every record has. `give` puts a read array into the record; null: the content follows from the rest and is compared.
+struct DatasetRow {
+  DatasetSpec spec;
+  Array (*take)(const View&);
+  void (*give)(Record&, const Array&);
+};
+
+std::span<const DatasetRow> datasets();  // dimension scales come before what uses them
+
+// /series holds one f8 dataset a column, in order, over /series/step_time.
+DatasetSpec series_spec(std::string_view name, std::string_view unit);
+Array series_array(const Column& column);
+
+using Value = std::variant<std::string, double, std::uint64_t>;
+
+struct AttributeRow {
+  std::string_view object;  // "/" or a group
+  std::string_view name;
+  Value (*take)(const Record&);
+  bool (*give)(Record&, const Value&);  // false where the value is not one of the allowed; null: follows from the rest and is compared
+};
+
+std::span<const AttributeRow> attributes();
+
+std::span<const std::string_view> groups();  // beside the root; /provenance has any text attributes
+
+// As many trailing indices as fit 64 Ki elements make a chunk.
+std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims);
+
+bool is_name(std::string_view name);  // letters, digits and _ . + -, at most name_limit
+
+bool same(const Value& a, const Value& b);  // bitwise for numbers, so that not-a-number equals itself
+
+std::vector<std::string> texts_of(const Array& array);
+std::vector<double> doubles_of(const Array& array);
+Array array_of(std::span<const double> values, std::vector<std::size_t> dims);
+Array array_of(std::span<const std::string> texts);
+
+}  // namespace fracfarm::grammar

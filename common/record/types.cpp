@@ -1,0 +1,85 @@
+#include "common/record/types.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fracfarm::h5 {
+
+Handle file_type(grammar::Type type, std::size_t width) {
+  switch (type) {
+    case grammar::Type::f4:
+      return h5::type(H5Tcopy(H5T_IEEE_F32LE));
+    case grammar::Type::f8:
+      return h5::type(H5Tcopy(H5T_IEEE_F64LE));
+    case grammar::Type::u1:
+      return h5::type(H5Tcopy(H5T_STD_U8LE));
+    case grammar::Type::text:
+      break;
+  }
+  Handle text = h5::type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(text, width);
+  H5Tset_strpad(text, H5T_STR_NULLPAD);
+  return text;
+}
+
+bool shuffled(const grammar::Array& array) { return array.type != grammar::Type::text && array.width > 1; }
+
+Handle use_type() {
+  Handle made = h5::type(H5Tcreate(H5T_COMPOUND, sizeof(UseRow)));
+  H5Tinsert(made, "dataset", HOFFSET(UseRow, dataset), H5T_STD_REF_OBJ);
+  H5Tinsert(made, "dimension", HOFFSET(UseRow, dimension), H5T_NATIVE_INT);
+  return made;
+}
+
+Handle use_file_type() {
+  Handle made = h5::type(H5Tcreate(H5T_COMPOUND, sizeof(hobj_ref_t) + 4));
+  H5Tinsert(made, "dataset", 0, H5T_STD_REF_OBJ);
+  H5Tinsert(made, "dimension", sizeof(hobj_ref_t), H5T_STD_I32LE);
+  return made;
+}
+
+Handle scale_list_type() { return h5::type(H5Tvlen_create(H5T_STD_REF_OBJ)); }
+
+ChunkWalk::ChunkWalk(const std::vector<std::size_t>& dims, std::size_t width)
+    : dims_(dims), chunk_(grammar::chunk_dims(dims)), width_(width), chunk_bytes_(width), offset_(dims.size(), 0) {
+  for (std::size_t extent : chunk_) chunk_bytes_ *= extent;
+}
+
+bool ChunkWalk::next() {
+  for (std::size_t d = dims_.size(); d-- > 0;) {
+    offset_[d] += chunk_[d];
+    if (offset_[d] < dims_[d]) return true;
+    offset_[d] = 0;
+  }
+  return false;
+}
+
+// A run is a row along the last dimension.
+template <class Copy>
+void ChunkWalk::each_run(Copy copy) const {
+  const std::size_t rank = dims_.size(), last = rank - 1;
+  const std::size_t run = std::min<std::size_t>(chunk_[last], dims_[last] - offset_[last]) * width_;
+  std::vector<std::size_t> at(rank, 0);  // row within the chunk
+  for (;;) {
+    std::size_t in_array = 0, in_chunk = 0;
+    for (std::size_t d = 0; d < rank; ++d) {
+      in_array = in_array * dims_[d] + offset_[d] + at[d];
+      in_chunk = in_chunk * chunk_[d] + at[d];
+    }
+    copy(in_array * width_, in_chunk * width_, run);
+    std::size_t d = last;
+    while (d > 0 && (++at[d - 1] == chunk_[d - 1] || offset_[d - 1] + at[d - 1] == dims_[d - 1])) at[--d] = 0;
+    if (d == 0) return;
+  }
+}
+
+void ChunkWalk::gather(const std::string& array, std::string& chunk) const {
+  std::fill(chunk.begin(), chunk.end(), '\0');
+  each_run([&](std::size_t from, std::size_t to, std::size_t bytes) { std::memcpy(chunk.data() + to, array.data() + from, bytes); });
+}
+
+void ChunkWalk::scatter(const std::string& chunk, std::string& array) const {
+  each_run([&](std::size_t to, std::size_t from, std::size_t bytes) { std::memcpy(array.data() + to, chunk.data() + from, bytes); });
+}
+
+}  // namespace fracfarm::h5
