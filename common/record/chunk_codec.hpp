@@ -9,7 +9,7 @@
 
 namespace fracfarm {
 
-// raw: whole chunk, elements of element_size bytes (1: no shuffle). Level: libdeflate's, 1 ... 12.
+// raw: whole chunk, elements of 1 (no shuffle), 4 or 8 bytes. Level: libdeflate's, 1 ... 12.
 std::string encode_chunk(std::string_view raw, std::size_t element_size, int level);
 
 // Empty on success, else what is wrong in words. `raw` is sized by the caller and filled.

@@ -47,7 +47,8 @@ double count_not_finite(const Context& c) {
 double outside_unit_range(const Context& c) {
   float worst = 0.0f;
   const auto look = [&](const std::vector<float>& field) {
-    for (float psi : field) worst = std::max({worst, -psi, psi - 1.0f});
+    for (float psi : field)
+      if (!(psi >= 0.0f && psi <= 1.0f)) worst = std::max({worst, -psi, psi - 1.0f});
   };
   for (const auto& frame : c.field.psi) look(frame);
   look(c.field.psi_initial), look(c.field.psi_failure);
@@ -57,7 +58,8 @@ double outside_unit_range(const Context& c) {
 // Largest drop of damage from `before` to `after`.
 float healing(const std::vector<float>& before, const std::vector<float>& after) {
   float worst = 0.0f;
-  for (std::size_t i = 0; i < before.size(); ++i) worst = std::max(worst, before[i] - after[i]);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (before[i] > after[i]) worst = std::max(worst, before[i] - after[i]);
   return worst;
 }
 
@@ -75,9 +77,11 @@ double healed(const Context& c) {
 
 double mask_below_one(const Context& c) {
   float worst = 0.0f;
+  std::vector<std::size_t> held;
+  for (std::size_t i = 0; i < c.field.mask_initial.size(); ++i)
+    if (c.field.mask_initial[i]) held.push_back(i);
   const auto look = [&](const std::vector<float>& field) {
-    for (std::size_t i = 0; i < field.size(); ++i)
-      if (c.field.mask_initial[i]) worst = std::max(worst, 1.0f - field[i]);
+    for (std::size_t i : held) worst = std::max(worst, 1.0f - field[i]);
   };
   for (const auto& frame : c.field.psi) look(frame);
   look(c.field.psi_initial), look(c.field.psi_failure);
