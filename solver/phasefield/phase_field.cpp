@@ -1,0 +1,132 @@
+#include "solver/phasefield/phase_field.hpp"
+
+#include <algorithm>
+
+namespace fracfarm::phasefield {
+namespace {
+
+// Mean outward stress on the held nodes of each side, Pa.
+std::array<double, 4> reactions(const Model& model, const Scratch& scratch) {
+  const double width = model.grid.hx * model.grid.cells_x(), height = model.grid.hz * model.grid.cells_z();
+  std::array<double, 4> stress{};
+  for (const Motion& motion : model.boundary.motions) {
+    if (!motion.normal) continue;
+    const bool vertical = motion.axis == Axis::x;
+    const double outward = motion.side == Side::right || motion.side == Side::top ? 1.0 : -1.0;
+    double force = 0.0;
+    for (const std::size_t n : motion.nodes) force -= (vertical ? scratch.fx : scratch.fz)[n];
+    stress[static_cast<std::size_t>(motion.side)] += outward * force / (vertical ? height : width);
+  }
+  return stress;
+}
+
+// Visits the nodes of a side.
+template <class Visit>
+void along_side(const Grid& grid, Side side, Visit visit) {
+  const bool vertical = side == Side::left || side == Side::right;
+  for (int k = 0; k < (vertical ? grid.rows : grid.columns); ++k) switch (side) {
+      case Side::left:
+        visit(grid.index(0, k));
+        break;
+      case Side::right:
+        visit(grid.index(grid.columns - 1, k));
+        break;
+      case Side::bottom:
+        visit(grid.index(k, 0));
+        break;
+      case Side::top:
+        visit(grid.index(k, grid.rows - 1));
+        break;
+    }
+}
+
+std::vector<double> coordinates(int count, double h) {
+  std::vector<double> at(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) at[static_cast<std::size_t>(k)] = k * h;
+  return at;
+}
+
+}  // namespace
+
+PhaseField::PhaseField(const Scene& scene, const Kernels& kernels)
+    : kernels_(kernels), initial_(scene.initial), model_(build_model(scene)), state_(make_state(model_)), scratch_(make_scratch(model_)) {}
+
+Result<void> PhaseField::start(double dt) { return phasefield::start(model_, initial_, state_, scratch_, kernels_, dt); }
+
+Result<void> PhaseField::step(long long n, double dt) { return phasefield::step(model_, state_, scratch_, kernels_, n, dt); }
+
+double PhaseField::area() const { return model_.grid.hx * model_.grid.cells_x() * model_.grid.hz * model_.grid.cells_z(); }
+
+double PhaseField::mean_stress_zz() const { return scratch_.stress.zz / area(); }
+
+bool PhaseField::crack_reaches(Side side, double threshold) const {
+  bool found = false;
+  along_side(model_.grid, side, [&](std::size_t n) { found = found || state_.psi[n] > threshold; });
+  return found;
+}
+
+SampleRow PhaseField::sample(long long n, double dt) const {
+  const View v = view(model_, state_, scratch_);
+  const SurfaceSum surface = kernels_.surface(v, state_.psi.data() + model_.grid.origin());
+  SampleRow s;
+  s.step_time = static_cast<double>(n) * dt;
+  s.stress_xx = scratch_.stress.xx / area();
+  s.stress_zz = scratch_.stress.zz / area();
+  s.reaction = reactions(model_, scratch_);
+  s.kinetic_energy = kernels_.kinetic(v, 0.5 * dt);
+  s.elastic_energy = scratch_.drop.elastic;
+  s.released_energy = state_.released;
+  s.surface_energy = surface.local + surface.gradient - state_.initial_surface;
+  s.external_work = state_.external_work;
+  s.energy_residual = energy_residual(s, state_.initial_energy);
+  s.crack_length = surface.length;
+  s.dt = dt;
+  s.solver_iterations = state_.sweeps;
+  return s;
+}
+
+void PhaseField::copy_damage(std::vector<double>& values) const {
+  const Grid& grid = model_.grid;
+  values.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  for (int j = 0; j < grid.rows; ++j)
+    std::copy_n(state_.psi.data() + grid.index(0, j), grid.columns, values.data() + static_cast<std::ptrdiff_t>(j) * grid.columns);
+}
+
+std::vector<double> PhaseField::x() const { return coordinates(model_.grid.columns, model_.grid.hx); }
+std::vector<double> PhaseField::z() const { return coordinates(model_.grid.rows, model_.grid.hz); }
+
+void PhaseField::save(ArchiveWriter& archive) const {
+  for (const Field* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous}) archive.put_array(*field);
+  for (const Field& field : state_.history) archive.put_array(field);
+  for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
+  archive.put(state_.sweeps);
+}
+
+bool PhaseField::load(ArchiveReader& archive, long long n, double dt) {
+  for (Field* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous}) archive.get_array_like(*field);
+  for (Field& field : state_.history) archive.get_array_like(field);
+  for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})
+    *value = archive.get<double>();
+  state_.sweeps = archive.get<long long>();
+  if (archive.failed()) return false;
+  refresh(model_, state_, scratch_, kernels_, n, dt);
+  return true;
+}
+
+std::map<std::string, double> PhaseField::stage_seconds() const {
+  std::map<std::string, double> seconds;
+  for (std::size_t k = 0; k < stage_names.size(); ++k) seconds[stage_names[k]] = scratch_.clock.seconds()[k];
+  return seconds;
+}
+
+std::string PhaseField::kernel() const { return std::string(kernels_.isa) + "/double"; }
+
+}  // namespace fracfarm::phasefield
+
+namespace fracfarm {
+
+std::unique_ptr<Simulation> make_phase_field(const Scene& scene) {
+  return std::make_unique<phasefield::PhaseField>(scene, phasefield::chosen_kernels());
+}
+
+}  // namespace fracfarm

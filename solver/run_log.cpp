@@ -1,0 +1,100 @@
+#include "solver/run_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fracfarm {
+namespace {
+
+// Frame k belongs to the step nearest to k intervals.
+long long step_of_frame(std::uint64_t k, double interval, double dt) { return std::llround(static_cast<double>(k) * interval / dt); }
+
+}  // namespace
+
+RunLog::RunLog(const Scene& scene, double dt) : dt_(dt), frame_interval_(scene.frame_interval), watch_(watched_directions(scene)) {}
+
+Result<void> RunLog::note(const Simulation& simulation, long long n) {
+  const double time = static_cast<double>(n) * dt_;
+  peak_stress_ = std::max(peak_stress_, simulation.mean_stress_zz());
+  if (n > 0) watch_.after_step(simulation, time);
+  if (n % steps_per_row == 0) {
+    add_row(simulation, n);
+    if (auto healthy = check_health(n); !healthy) return healthy;
+  }
+  if (frame_interval_ > 0.0 && step_of_frame(next_frame_, frame_interval_, dt_) <= n) {
+    frames_.push_back({time, damage_field(simulation)});
+    while (step_of_frame(next_frame_, frame_interval_, dt_) <= n) ++next_frame_;  // frames closer than steps: one instant is stored once
+  }
+  return {};
+}
+
+void RunLog::add_row(const Simulation& simulation, long long n) {
+  SampleRow sample = simulation.sample(n, dt_);
+  const long long sweeps = sample.solver_iterations;
+  sample.solver_iterations -= last_.solver_iterations;
+  append(series_, sample);
+  last_ = sample;
+  last_.solver_iterations = sweeps;
+  largest_work_ = std::max(largest_work_, std::abs(sample.external_work));
+  largest_energy_ = std::max({largest_energy_, std::abs(sample.external_work), sample.kinetic_energy + sample.elastic_energy});
+  largest_residual_ = std::max(largest_residual_, std::abs(sample.energy_residual));
+  watch_.at_row(simulation, sample.stress_zz);
+}
+
+Result<void> RunLog::check_health(long long n) const {
+  const SampleRow& s = last_;
+  const double total = s.kinetic_energy + s.elastic_energy + s.released_energy + s.surface_energy + s.external_work;
+  if (!std::isfinite(total))
+    return fail(Fault::solver_numeric,
+                fmt::format("not finite at step {}, {:.6g} s: kinetic {:.4g}, elastic {:.4g}, released {:.4g}, external work {:.4g} J/m", n,
+                            s.step_time, s.kinetic_energy, s.elastic_energy, s.released_energy, s.external_work));
+  if (n >= residual_grace_steps && std::abs(s.energy_residual) > residual_limit * largest_energy_)
+    return fail(
+        Fault::solver_numeric,
+        fmt::format("the energy ledger is open at step {}, {:.6g} s: residual {:.4g} J/m of {:.4g} J/m, limit {:.0f} %; dt {:.6g} s", n,
+                    s.step_time, s.energy_residual, largest_energy_, 100.0 * residual_limit, dt_));
+  return {};
+}
+
+void RunLog::close(const Simulation& simulation, long long n) {
+  if (n % steps_per_row != 0) add_row(simulation, n);
+}
+
+double RunLog::worst_residual() const { return largest_work_ > 0.0 ? largest_residual_ / largest_work_ : 0.0; }
+
+void RunLog::save(ArchiveWriter& archive) const {
+  watch_.save(archive);
+  for (const Column& column : series_.columns) archive.put_array(column.values);
+  archive.put(static_cast<std::uint64_t>(frames_.size()));
+  for (const Frame& frame : frames_) {
+    archive.put(frame.time);
+    archive.put_array(frame.psi);
+  }
+  archive.put(next_frame_);
+  archive.put(last_);
+  for (const double value : {peak_stress_, largest_work_, largest_energy_, largest_residual_}) archive.put(value);
+}
+
+bool RunLog::load(ArchiveReader& archive, const Simulation& simulation) {
+  const std::size_t nodes = static_cast<std::size_t>(simulation.columns()) * static_cast<std::size_t>(simulation.rows());
+  watch_.load(archive);
+  for (Column& column : series_.columns) {
+    archive.get_array(column.values);
+    if (column.values.size() != series_.rows()) archive.reject();
+  }
+  const std::uint64_t count = archive.get<std::uint64_t>();
+  for (std::uint64_t k = 0; k < count && !archive.failed(); ++k) {
+    Frame frame{archive.get<double>(), {}};
+    archive.get_array(frame.psi);
+    if (frame.psi.size() != nodes) archive.reject();
+    frames_.push_back(std::move(frame));
+  }
+  next_frame_ = archive.get<std::uint64_t>();
+  last_ = archive.get<SampleRow>();
+  for (double* value : {&peak_stress_, &largest_work_, &largest_energy_, &largest_residual_}) *value = archive.get<double>();
+  return !archive.failed();
+}
+
+}  // namespace fracfarm

@@ -1,0 +1,50 @@
+// The seam between the time loop and a method: stable_dt, start, step, sample, save, load. The loop knows no equations, a method knows no
+// criteria, files or clocks beyond its own stage times.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/result.hpp"
+#include "common/failure/failure.hpp"
+#include "common/scene/scene.hpp"
+#include "solver/archive.hpp"
+#include "solver/sample.hpp"
+
+namespace fracfarm {
+
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  virtual double stable_dt() const = 0;  // s, edge of the scheme
+  // Fields at t = 0, forces, and the energy that was there before the boundary moved.
+  virtual Result<void> start(double dt) = 0;
+  // From time n dt to (n + 1) dt. Errors: SOLVER_NUMERIC.
+  virtual Result<void> step(long long n, double dt) = 0;
+
+  virtual double mean_stress_zz() const = 0;  // Pa, after each step
+  virtual bool crack_reaches(Side side, double threshold) const = 0;
+  virtual SampleRow sample(long long n, double dt) const = 0;
+
+  // Damage on the nodes, row 0 at the bottom.
+  virtual int columns() const = 0;
+  virtual int rows() const = 0;
+  virtual void copy_damage(std::vector<double>& values) const = 0;
+  virtual std::vector<unsigned char> mask() const = 0;
+  virtual std::vector<double> x() const = 0;  // m
+  virtual std::vector<double> z() const = 0;  // m
+
+  // Exactly what a restart needs. After load, steps give the same bits as if the run had never stopped.
+  virtual void save(ArchiveWriter& archive) const = 0;
+  virtual bool load(ArchiveReader& archive, long long n, double dt) = 0;
+
+  virtual std::map<std::string, double> stage_seconds() const = 0;
+  virtual std::string kernel() const = 0;
+};
+
+std::unique_ptr<Simulation> make_phase_field(const Scene& scene);
+
+}  // namespace fracfarm

@@ -1,0 +1,178 @@
+// The door and the one time loop: start or resume, step, note, stop. Knows criteria, budgets and checkpoints, and no equations.
+#include "solver/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/base/build_info.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/text.hpp"
+#include "solver/checkpoint.hpp"
+#include "solver/run_log.hpp"
+#include "solver/simulation.hpp"
+
+namespace fracfarm {
+namespace {
+
+constexpr double progress_interval_s = 0.5;
+constexpr double checkpoint_interval_s = 300.0;  // a killed run loses at most this much
+
+enum class End { none, through_crack, horizon, wall_clock, stopped };
+
+class Run {
+ public:
+  Run(const Scene& scene, const RunControl& control)
+      : scene_(scene),
+        control_(control),
+        simulation_(make_phase_field(scene)),
+        dt_(control.step_scale * scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())),
+        last_step_(static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9))),
+        log_(scene, dt_) {}
+
+  Result<RunResult> go() {
+    if (auto begun = resume_or_start(); !begun) return tl::unexpected(begun.error());
+    End end = why_end();
+    while (end == End::none) {
+      if (auto stepped = simulation_->step(n_, dt_); !stepped) return numeric_trouble(stepped.error());
+      ++n_;
+      if (auto noted = log_.note(*simulation_, n_); !noted) return tl::unexpected(noted.error());
+      tell_progress();
+      if (auto kept = checkpoint_now_and_then(); !kept) return tl::unexpected(kept.error());
+      end = why_end();
+    }
+    return finish(end);
+  }
+
+ private:
+  Result<void> resume_or_start() {
+    if (resume()) return {};
+    if (auto started = simulation_->start(dt_); !started) return started;
+    psi_initial_ = damage_field(*simulation_);
+    return log_.note(*simulation_, 0);
+  }
+
+  End why_end() {
+    if (scene_.stop == Stop::failure && log_.watch().through_crack()) return End::through_crack;
+    if (n_ >= last_step_) return End::horizon;
+    if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return End::stopped;
+    if (elapsed_s() >= control_.wall_budget_s) return End::wall_clock;
+    return End::none;
+  }
+
+  Result<RunResult> finish(End end) {
+    RunResult result;
+    result.stopped = end == End::stopped;
+    if (end == End::stopped || end == End::wall_clock) {
+      if (auto saved = save(); !saved) return tl::unexpected(saved.error());
+    } else if (!control_.checkpoint.empty()) {
+      std::error_code ignored;
+      std::filesystem::remove(control_.checkpoint, ignored);
+    }
+    if (result.stopped) return result;
+    log_.close(*simulation_, n_);
+    fill(result, end == End::wall_clock ? "wall_clock" : "horizon");
+    return result;
+  }
+
+  void fill(RunResult& result, std::string_view otherwise) {
+    const Series& series = log_.series();
+    const auto through = log_.watch().through_crack();
+    result.times = {{"through_crack", through},
+                    {"stress_drop", stress_drop(series["step_time"], series["stress_zz"])},
+                    {"five_step", five_step(series["step_time"], series["total_stress"], series["kinetic_energy"])}};
+    result.judgement = judge(result.times, otherwise);
+    result.peak_stress = log_.peak_stress();
+    result.x = simulation_->x(), result.z = simulation_->z();
+    result.mask_initial = simulation_->mask();
+    result.psi_initial = psi_initial_;
+    result.psi_failure = failure_field(result.judgement.rule);
+    result.frames = std::move(log_.frames());
+    result.series = series;
+    result.steps = n_, result.dt = dt_;
+    result.energy_residual = log_.worst_residual();
+    result.cpu_s = cpu_before_s_ + thread_cpu_s() - cpu_start_s_;
+    result.wall_s = wall_before_s_ + elapsed_s();
+    result.stages = simulation_->stage_seconds();
+    result.kernel = simulation_->kernel();
+  }
+
+  std::vector<float> failure_field(std::string_view rule) const {
+    if (rule == "through_crack") return log_.watch().psi_through();
+    if (rule == "stress_drop" && !log_.watch().psi_dropped().empty()) return log_.watch().psi_dropped();
+    return damage_field(*simulation_);
+  }
+
+  // Whose checkpoint it is: the job, the build and the step size; any of them changes the numbers.
+  std::string identity() const { return fmt::format("{} {} {}", control_.checkpoint_key, build_info().build_id, shortest(dt_)); }
+
+  Result<void> save() {
+    last_save_s_ = elapsed_s();
+    if (control_.checkpoint.empty()) return {};
+    ArchiveWriter archive;
+    archive.put(n_);
+    archive.put(cpu_before_s_ + thread_cpu_s() - cpu_start_s_);
+    archive.put(wall_before_s_ + elapsed_s());
+    archive.put_array(psi_initial_);
+    simulation_->save(archive);
+    log_.save(archive);
+    return write_checkpoint(control_.checkpoint, identity(), archive.bytes());
+  }
+
+  // False where there is nothing to resume from; the simulation and the log are then as new.
+  bool resume() {
+    if (control_.checkpoint.empty()) return false;
+    const CheckpointRead read = read_checkpoint(control_.checkpoint, identity());
+    if (read.payload && load(*read.payload)) return true;
+    if (!read.note.empty() || read.payload)
+      fmt::print(stderr, "note: {}\n", read.payload ? "checkpoint ignored: its contents do not fit the scene" : read.note);
+    return false;
+  }
+
+  bool load(std::string_view payload) {
+    ArchiveReader archive(payload);
+    n_ = archive.get<long long>();
+    cpu_before_s_ = archive.get<double>();
+    wall_before_s_ = archive.get<double>();
+    archive.get_array(psi_initial_);
+    if (simulation_->load(archive, n_, dt_) && log_.load(archive, *simulation_) && archive.finished()) return true;
+    simulation_ = make_phase_field(scene_);
+    log_ = RunLog(scene_, dt_);
+    n_ = 0, cpu_before_s_ = wall_before_s_ = 0.0;
+    return false;
+  }
+
+  Result<void> checkpoint_now_and_then() { return elapsed_s() - last_save_s_ < checkpoint_interval_s ? Result<void>{} : save(); }
+
+  void tell_progress() {
+    if (!control_.progress || elapsed_s() - last_progress_s_ < progress_interval_s) return;
+    last_progress_s_ = elapsed_s();
+    control_.progress(n_, static_cast<double>(n_) * dt_, scene_.horizon);
+  }
+
+  tl::unexpected<Error> numeric_trouble(const Error& error) const {
+    return fail(error.fault, fmt::format("{}; at step {}, {:.6g} s, dt {:.6g} s", error.message, n_, static_cast<double>(n_) * dt_, dt_));
+  }
+
+  double elapsed_s() { return clock_.monotonic_s() - start_s_; }
+
+  const Scene& scene_;
+  const RunControl& control_;
+  SystemClock clock_;
+  const double start_s_ = clock_.monotonic_s();
+  const double cpu_start_s_ = thread_cpu_s();
+  std::unique_ptr<Simulation> simulation_;
+  double dt_;
+  long long last_step_;
+  RunLog log_;
+  long long n_ = 0;  // steps made
+  std::vector<float> psi_initial_;
+  double cpu_before_s_ = 0.0, wall_before_s_ = 0.0;  // of the attempts that this one resumed
+  double last_progress_s_ = 0.0, last_save_s_ = 0.0;
+};
+
+}  // namespace
+
+Result<RunResult> solve(const Scene& scene, const RunControl& control) { return Run(scene, control).go(); }
+
+}  // namespace fracfarm

@@ -1,0 +1,70 @@
+#include "solver/watch.hpp"
+
+#include <algorithm>
+
+#include "solver/boundary.hpp"
+
+namespace fracfarm {
+
+std::vector<float> damage_field(const Simulation& simulation) {
+  std::vector<double> values;
+  simulation.copy_damage(values);
+  return std::vector<float>(values.begin(), values.end());
+}
+
+std::vector<CrackDirection> watched_directions(const Scene& scene) {
+  const bool vertical = is_loaded(scene, Side::top) || is_loaded(scene, Side::bottom);
+  const bool horizontal = is_loaded(scene, Side::left) || is_loaded(scene, Side::right);
+  std::vector<CrackDirection> directions;
+  if (vertical || !horizontal) directions.push_back(CrackDirection::left_right);
+  if (horizontal || !vertical) directions.push_back(CrackDirection::bottom_top);
+  return directions;
+}
+
+// Most steps end at the first line: a path needs a cracked node on both sides.
+bool FailureWatch::is_through(const Simulation& simulation, CrackDirection direction) {
+  const bool across = direction == CrackDirection::left_right;
+  if (!simulation.crack_reaches(across ? Side::left : Side::bottom, through_crack_threshold)) return false;
+  if (!simulation.crack_reaches(across ? Side::right : Side::top, through_crack_threshold)) return false;
+  simulation.copy_damage(damage_);
+  visited_.resize(damage_.size());
+  return joins_sides({damage_, simulation.columns(), simulation.rows()}, through_crack_threshold, direction, visited_);
+}
+
+void FailureWatch::after_step(const Simulation& simulation, double time) {
+  if (through_crack_) return;
+  for (const CrackDirection direction : directions_) {
+    if (!is_through(simulation, direction)) continue;
+    through_crack_ = time;
+    psi_through_ = damage_field(simulation);
+    return;
+  }
+}
+
+void FailureWatch::at_row(const Simulation& simulation, double mean_stress) {
+  if (mean_stress > peak_) {
+    peak_ = mean_stress;
+    psi_dropped_.clear();
+  } else if (psi_dropped_.empty() && mean_stress < stress_drop_fraction * peak_) {
+    psi_dropped_ = damage_field(simulation);
+  }
+}
+
+void FailureWatch::save(ArchiveWriter& archive) const {
+  archive.put(through_crack_.has_value());
+  archive.put(through_crack_.value_or(0.0));
+  archive.put(peak_);
+  archive.put_array(psi_through_);
+  archive.put_array(psi_dropped_);
+}
+
+void FailureWatch::load(ArchiveReader& archive) {
+  const bool through = archive.get<bool>();
+  const double time = archive.get<double>();
+  if (through) through_crack_ = time;
+  peak_ = archive.get<double>();
+  archive.get_array(psi_through_);
+  archive.get_array(psi_dropped_);
+}
+
+}  // namespace fracfarm

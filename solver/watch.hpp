@@ -1,0 +1,46 @@
+// The failure watch of a run: through cracks after every step, the candidate of the stress drop at every row, and the fields at both times.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/failure/failure.hpp"
+#include "solver/archive.hpp"
+#include "solver/simulation.hpp"
+
+namespace fracfarm {
+
+// Left to right where top or bottom is loaded, bottom to top where left or right is; both where nothing is.
+std::vector<CrackDirection> watched_directions(const Scene& scene);
+
+class FailureWatch {
+ public:
+  explicit FailureWatch(std::vector<CrackDirection> directions) : directions_(std::move(directions)) {}
+
+  // After a step that ended at `time` (s): notes the first through crack and its field.
+  void after_step(const Simulation& simulation, double time);
+  // At a row of the series: keeps the field of the first row below a tenth of the largest row so far, and drops it when a larger row comes.
+  void at_row(const Simulation& simulation, double mean_stress);
+
+  const std::optional<double>& through_crack() const { return through_crack_; }  // s
+  const std::vector<float>& psi_through() const { return psi_through_; }
+  const std::vector<float>& psi_dropped() const { return psi_dropped_; }  // empty: the stress never dropped
+
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+ private:
+  bool is_through(const Simulation& simulation, CrackDirection direction);
+
+  std::vector<CrackDirection> directions_;
+  std::optional<double> through_crack_;
+  double peak_ = 0.0;  // Pa, largest row
+  std::vector<float> psi_through_, psi_dropped_;
+  std::vector<double> damage_;  // scratch
+  std::vector<unsigned char> visited_;
+};
+
+// The damage field as it is stored.
+std::vector<float> damage_field(const Simulation& simulation);
+
+}  // namespace fracfarm
