@@ -1,0 +1,79 @@
+// Who is connected and how fast results come: the reactor's memory between messages. Nothing here is needed after a restart.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/wire/messages.hpp"
+
+namespace fracfarm {
+
+// Now, by both clocks: deadlines go by the monotonic one, people read the other.
+struct Instant {
+  double monotonic_s = 0.0;
+  double wall_s = 0.0;
+};
+
+inline constexpr int most_fast_faults = 5;      // in a row; then a worker gets nothing until it is started again
+inline constexpr double fast_fault_s = 10.0;    // a fault within this of its lease is a fast one
+inline constexpr std::size_t kept_replies = 4;  // for requests that come twice
+
+// One worker daemon, by the authenticated name of its key.
+struct Session {
+  std::int64_t worker = 0;  // row of the ledger
+  std::string instance;
+  std::string node;
+  std::string build_id;
+  int slots = 0;
+  double remaining_s = -1.0;  // as it last said
+  double seen_s = 0.0;        // monotonic
+  int fast_faults = 0;
+  std::deque<std::pair<std::uint64_t, wire::Reply>> replies;
+
+  bool stopped() const { return fast_faults >= most_fast_faults; }
+  const wire::Reply* replied(std::uint64_t request_id) const {
+    for (const auto& [id, reply] : replies)
+      if (id == request_id) return &reply;
+    return nullptr;
+  }
+  void remember(std::uint64_t request_id, const wire::Reply& reply) {
+    replies.emplace_back(request_id, reply);
+    if (replies.size() > kept_replies) replies.pop_front();
+  }
+};
+
+using Roster = std::map<std::string, Session>;
+
+// Results a second over the last two minutes.
+class RateMeter {
+ public:
+  explicit RateMeter(double now_s) : began_s_(now_s) {}
+  void count(double now_s) {
+    if (buckets_.empty() || now_s - buckets_.back().first >= 1.0) buckets_.emplace_back(now_s, 0);
+    ++buckets_.back().second;
+    forget(now_s);
+  }
+  double per_second(double now_s) {
+    forget(now_s);
+    std::uint64_t n = 0;
+    for (const auto& bucket : buckets_) n += bucket.second;
+    const double since = std::max(began_s_, now_s - window_s);
+    return static_cast<double>(n) / std::max(1.0, now_s - since);
+  }
+
+ private:
+  static constexpr double window_s = 120.0;
+  void forget(double now_s) {
+    while (!buckets_.empty() && now_s - buckets_.front().first > window_s) buckets_.pop_front();
+  }
+  double began_s_;
+  std::deque<std::pair<double, std::uint64_t>> buckets_;
+};
+
+}  // namespace fracfarm

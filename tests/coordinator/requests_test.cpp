@@ -1,0 +1,176 @@
+#include "coordinator/requests.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/coordinator/farm_fixture.hpp"
+
+using namespace fracfarm;
+using namespace fracfarm::test;
+using nlohmann::json;
+
+TEST_CASE("Every request answers a JSON object that names its schema, also to nonsense") {
+  Farm farm(2);
+  for (const RequestRow& row : requests())
+    for (const char* arguments : {"{}", "", "[1,2]", "nonsense \xff", R"({"joob": 3})",
+                                  R"({"jobs": "x", "job": [], "limit": -5, "after": "a", "workers": 7, "keys": {}, "campaign": 5})"}) {
+      INFO(row.verb << " " << arguments);
+      const auto answer = std::get<wire::Answer>(farm.tell("client", wire::Ask{std::string(row.verb), arguments}));
+      const json body = json::parse(answer.body);
+      CHECK(body.at("schema").get<std::string>().find("fracfarm.") == 0);
+    }
+}
+
+TEST_CASE("An unknown argument is refused with the nearest known one") {
+  Farm farm(1);
+  int exit_code = 0;
+  const json body = farm.ask("jobs", {{"materiel", "pbx"}}, &exit_code);
+  CHECK(exit_code == 2);
+  CHECK(body["problems"][0]["suggestion"] == "did you mean 'material'?");
+}
+
+TEST_CASE("An unknown request is refused") {
+  Farm farm(1);
+  int exit_code = 0;
+  farm.ask("stattus", json::object(), &exit_code);
+  CHECK(exit_code == 2);
+}
+
+TEST_CASE("Status has what scripts rely on") {
+  Farm farm(3);
+  farm.hello("worker-a", "n1");
+  farm.complete("worker-a", result_of(farm.one("worker-a")));
+  const json it = farm.ask("status", json::object());
+  CHECK(it["schema"] == "fracfarm.status/1");
+  CHECK(it["counts"]["done"] == 1);
+  CHECK(it["counts"]["ready"] == 2);
+  CHECK(it["verdicts"] == json{{"failed", 1}, {"censored", 0}, {"rejected", 0}});
+  CHECK(it["rate_per_s"].get<double>() > 0.0);
+  CHECK(it["eta_s"].get<double>() == Approx(2.0 / it["rate_per_s"].get<double>()));
+  CHECK(it["finish_time"].is_string());
+  CHECK(it["faults"].is_object());
+  CHECK(it["workers"][0]["name"] == "worker-a");
+  CHECK(it["classes"][0]["material"] == "pbx");
+  CHECK(it["settled"] == false);
+}
+
+TEST_CASE("Submitting twice changes nothing; an overlapping campaign adds only what is new") {
+  Farm farm(4);
+  const json twice = farm.submit(campaign_text(4));
+  CHECK(twice["total"] == 4);
+  CHECK(farm.ask("status", json::object())["total"] == 4);
+  farm.submit(campaign_text(6));
+  const json status = farm.ask("status", json::object());
+  CHECK(status["total"] == 6);
+  CHECK(status["campaigns"][1]["shared"] == 4);
+}
+
+TEST_CASE("A large campaign is made in stretches and goes on after a restart where it was") {
+  Farm farm(0);
+  farm.settings.expand_most = 3;
+  farm.start();
+  farm.ask("submit", {{"campaign", campaign_text(10)}});
+  farm.tick();
+  CHECK(farm.ask("status", json::object())["total"] == 3);
+  CHECK(farm.ask("status", json::object())["unmade"] == 7);
+  CHECK_FALSE(farm.reactor->settled());
+  farm.start();
+  while (farm.tick()) {
+  }
+  CHECK(farm.ask("status", json::object())["total"] == 10);
+}
+
+TEST_CASE("A campaign with mistakes is refused with all of them and leaves nothing behind") {
+  Farm farm(0);
+  int exit_code = 0;
+  const json body =
+      farm.submit(R"({"name": "x", "seed": 1, "jobs": [{"materials": ["pbxx"], "loads": ["uniaxal"], "patterns": {"orthogonal": "1-2"}}]})",
+                  &exit_code);
+  CHECK(exit_code == 2);
+  CHECK(body["problems"].size() >= 2);
+  CHECK(farm.ask("status", json::object())["campaigns"].empty());
+}
+
+TEST_CASE("A second solver build waits until the first one's jobs are settled") {
+  Farm farm(1);
+  farm.settings.build_id = "build-b";
+  farm.start();
+  int exit_code = 0;
+  const json refused = farm.submit(campaign_text(1), &exit_code);
+  CHECK(exit_code == 2);
+  CHECK(refused["message"].get<std::string>().find("build-a") != std::string::npos);
+  farm.ask("cancel", {{"state", "READY"}});
+  farm.submit(campaign_text(1), &exit_code);
+  CHECK(exit_code == 0);
+  CHECK(farm.ask("status", json::object())["build_id"] == "build-b");
+}
+
+TEST_CASE("Jobs can be listed by state, material and load, in pages") {
+  Farm farm(5);
+  farm.hello("worker-a", "n1");
+  farm.complete("worker-a", result_of(farm.one("worker-a")));
+  const json done = farm.ask("jobs", {{"state", "done"}})["jobs"];
+  REQUIRE(done.size() == 1);
+  CHECK(done[0]["verdict"] == "failed");
+  CHECK(done[0]["time_to_failure"] == 4.5e-5);
+  CHECK(done[0]["pattern"] == "orthogonal 1");
+  const json page = farm.ask("jobs", {{"limit", 2}, {"after", 2}});
+  CHECK(page["jobs"][0]["id"] == 3);
+  CHECK(page["more"] == true);
+  CHECK(farm.ask("jobs", {{"material", "steel"}})["jobs"].empty());
+}
+
+TEST_CASE("Explain finds a job by id and by the beginning of its key, and can give its scene") {
+  Farm farm(3);
+  const std::string key = farm.job(2u).key;
+  CHECK(farm.ask("explain", {{"job", "2"}})["key"] == key);
+  const json by_key = farm.ask("explain", {{"job", key.substr(0, 9)}, {"scene", true}});
+  CHECK(by_key["id"] == 2);
+  CHECK(by_key["scene"].get<std::string>().find("fracfarm.scene/1") != std::string::npos);
+  int exit_code = 0;
+  farm.ask("explain", {{"job", "99"}}, &exit_code);
+  CHECK(exit_code == 2);
+}
+
+TEST_CASE("Retry gives a quarantined job every budget anew; a dry run changes nothing") {
+  Farm farm(1);
+  farm.hello("worker-a", "n1");
+  const wire::Assignment it = farm.one("worker-a");
+  farm.fail_with("worker-a", it, Fault::bad_request);
+  REQUIRE(farm.job(it.job).state == State::quarantined);
+  CHECK(farm.ask("retry", {{"class", "BAD_REQUEST"}, {"dry_run", true}})["changed"] == 1);
+  CHECK(farm.job(it.job).state == State::quarantined);
+  CHECK(farm.ask("retry", {{"state", "QUARANTINED"}})["changed"] == 1);
+  CHECK(farm.job(it.job).state == State::ready);
+  farm.fail_with("worker-a", farm.one("worker-a"), Fault::solver_crash);
+  CHECK(farm.job(it.job).state == State::retry_wait);
+}
+
+TEST_CASE("What cannot be tried again or cancelled is said, one reason each") {
+  Farm farm(1);
+  farm.hello("worker-a", "n1");
+  const wire::Assignment it = farm.one("worker-a");
+  farm.complete("worker-a", result_of(it));
+  int exit_code = 0;
+  const json retried = farm.ask("retry", {{"jobs", {it.job}}}, &exit_code);
+  CHECK(exit_code == 1);
+  CHECK(retried["refused"][0]["why"].get<std::string>().find("done") != std::string::npos);
+  farm.ask("cancel", {{"jobs", {it.job}}}, &exit_code);
+  CHECK(exit_code == 1);
+  farm.ask("retry", json::object(), &exit_code);
+  CHECK(exit_code == 2);
+}
+
+TEST_CASE("Records say where the bytes of every DONE job lie") {
+  Farm farm(3);
+  farm.hello("worker-a", "n1");
+  const wire::Assignment it = farm.one("worker-a");
+  farm.complete("worker-a", result_of(it));
+  const json list = farm.ask("records", json::object())["records"];
+  REQUIRE(list.size() == 1);
+  CHECK(list[0]["key"] == it.key);
+  CHECK(list[0]["offset"] == 512);
+  CHECK(list[0]["store"] == "store");
+  CHECK(farm.ask("known", {{"keys", {it.key, farm.job(2u).key, digest_of("x")}}}) ==
+        json{{"schema", "fracfarm.known/1"}, {"present", 2}, {"done", 1}});
+}
