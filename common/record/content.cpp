@@ -97,8 +97,10 @@ double not_increasing(const std::vector<double>& times) {
 
 double frame_times(const Context& c) {
   if (!c.scene) return infinity;
-  const bool starts = c.field.time.front() == 0.0,
-             ends = c.field.time.back() <= c.scene->horizon * (1.0 + 1e-6) + c.record.series["step_time"].back();
+  const auto rows = c.record.series["step_time"];
+  double gap = 0.0;  // at least one time step: the last one may reach past the horizon
+  for (std::size_t i = 1; i < rows.size(); ++i) gap = std::max(gap, rows[i] - rows[i - 1]);
+  const bool starts = c.field.time.front() == 0.0, ends = c.field.time.back() <= c.scene->horizon * (1.0 + 1e-9) + gap;
   return not_increasing(c.field.time) + !starts + !ends;
 }
 
@@ -179,39 +181,40 @@ const FailureTime* candidate(const Record& record, std::string_view rule) {
   return nullptr;
 }
 
-// Difference between a stored candidate and the same criterion on the stored series, in rows of the series.
-double rows_apart(const Context& c, std::string_view rule, const std::optional<double>& again) {
+// Between a stored candidate and the same criterion on the stored series, s.
+double seconds_apart(const Context& c, std::string_view rule, const std::optional<double>& again) {
   const FailureTime* stored = candidate(c.record, rule);
   if (!stored) return 0.0;
   if (stored->time.has_value() != again.has_value()) return infinity;
-  if (!again) return 0.0;
-  const auto times = c.record.series["step_time"];
-  double gap = 0.0;
-  for (std::size_t i = 1; i < times.size(); ++i) gap = std::max(gap, times[i] - times[i - 1]);
-  return share(std::abs(*stored->time - *again), gap);
+  return again ? std::abs(*stored->time - *again) : 0.0;
 }
 
 double drop_difference(const Context& c) {
-  return rows_apart(c, "stress_drop", stress_drop(c.record.series["step_time"], c.record.series["stress_zz"]));
+  return seconds_apart(c, "stress_drop", stress_drop(c.record.series["step_time"], c.record.series["stress_zz"]));
 }
 
 double pick_difference(const Context& c) {
   const Series& s = c.record.series;
-  return rows_apart(c, "five_step", five_step(s["step_time"], s["total_stress"], s["kinetic_energy"]));
+  return seconds_apart(c, "five_step", five_step(s["step_time"], s["total_stress"], s["kinetic_energy"]));
 }
 
 bool is_loaded(const Scene& scene, Side side) {
-  return std::any_of(scene.on(side).begin(), scene.on(side).end(),
-                     [](const SideLoad& load) { return load.normal_velocity.value_or(0.0) != 0.0 || load.traction; });
+  return std::any_of(scene.on(side).begin(), scene.on(side).end(), [](const SideLoad& load) {
+    const bool moves =
+        load.normal_velocity.value_or(0.0) != 0.0 || (load.tangential == Tangential::velocity && load.tangential_velocity != 0.0);
+    return moves || (load.traction && ((*load.traction)[0] != 0.0 || (*load.traction)[1] != 0.0));
+  });
 }
 
+// Left to right where top or bottom is loaded, bottom to top where left or right is; both where nothing is.
 bool is_through(const Context& c, const std::vector<float>& psi, double threshold) {
   const std::vector<double> values(psi.begin(), psi.end());
   const FieldView view{values, static_cast<int>(c.field.x.size()), static_cast<int>(c.field.z.size())};
   std::vector<unsigned char> visited;
-  const bool sideways = is_loaded(*c.scene, Side::left) || is_loaded(*c.scene, Side::right);
-  return joins_sides(view, threshold, CrackDirection::left_right, visited) ||
-         (sideways && joins_sides(view, threshold, CrackDirection::bottom_top, visited));
+  const bool vertical = is_loaded(*c.scene, Side::top) || is_loaded(*c.scene, Side::bottom);
+  const bool horizontal = is_loaded(*c.scene, Side::left) || is_loaded(*c.scene, Side::right);
+  return ((vertical || !horizontal) && joins_sides(view, threshold, CrackDirection::left_right, visited)) ||
+         ((horizontal || !vertical) && joins_sides(view, threshold, CrackDirection::bottom_top, visited));
 }
 
 // Fields that say otherwise than the through-crack time: one that should be through and is not, or is and should not be.
@@ -221,6 +224,7 @@ double through_crack_differences(const Context& c) {
   const std::optional<double> time = stored ? stored->time : std::nullopt;
   const double surely = through_crack_threshold + psi_spacing;  // a field may have been rounded up across the threshold
   double count = 0.0;
+  if (is_through(c, c.field.psi_initial, surely)) return time ? 0.0 : 1.0;  // cut from the start
   if (c.record.judgement.rule == "through_crack") count += !is_through(c, c.field.psi_failure, through_crack_threshold);
   if (!time) count += is_through(c, c.field.psi_failure, surely);
   const auto after = std::lower_bound(c.field.time.begin(), c.field.time.end(), time.value_or(infinity));
@@ -249,8 +253,8 @@ constexpr std::array<Rule, 16> rules{{
     {"ledger_sum", "largest error of the energy ledger's sum over the largest work", 1e-9, wrong_ledger},
     {"energy_closed", "largest energy residual over the largest work", 0.01, open_ledger},
     {"peak_stress", "relative distance of the stored peak from the series' own", 0.1, peak_difference},
-    {"stress_drop", "distance to the stress drop of the series, in rows", 1.5, drop_difference},
-    {"five_step", "distance to the five-step pick of the series, in rows", 1.5, pick_difference},
+    {"stress_drop", "seconds to the stress drop of the series", 0.0, drop_difference},
+    {"five_step", "seconds to the five-step pick of the series", 0.0, pick_difference},
     {"through_crack", "fields that contradict the time of the through crack", 0.0, through_crack_differences},
     {"judgement", "parts of the judgement that the candidates do not give", 0.0, judgement_differences},
 }};
