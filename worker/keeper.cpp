@@ -173,7 +173,7 @@ ShardWriter& Keeper::shard_of(const wire::Assignment& assignment) {
   const fs::path named = assignment.store.empty() ? "store" : assignment.store;
   const fs::path store = named.is_absolute() ? named : options_.farm / named;
   auto& shard = shards_[store];
-  if (!shard) shard = std::make_unique<ShardWriter>(ShardOptions{.store = store, .worker = options_.worker, .after_sync = {}}, clock_);
+  if (!shard) shard = std::make_unique<ShardWriter>(ShardOptions{.store = store, .worker = options_.worker}, clock_);
   return *shard;
 }
 

@@ -79,18 +79,18 @@ using Action = std::variant<Post, StartJob, StopJob, AbandonJob, Acknowledged, F
 using Actions = std::vector<Action>;
 
 struct SessionOptions {
-  std::string node;
-  std::string instance;
-  std::string build_id;  // of the solver
+  std::string node = {};
+  std::string instance = {};
+  std::string build_id = {};  // of the solver
   int slots = 1;
   std::uint64_t memory_bytes = 0;
-  bool once = false;                             // end where the coordinator says that nothing is left
-  double batch_s = 1.0;                          // hold about so many seconds of work per slot beyond what runs
-  double report_delay_s = 0.5;                   // gather completions so long where no slot waits
-  double farewell_s = 5.0;                       // for the last words after TERM where nobody answers
-  double end_margin_s = 30.0;                    // before the end of the allocation
-  std::optional<double> end_at;                  // of the allocation, on the clock of `now`
-  std::vector<wire::Completion> unacknowledged;  // what an earlier run of this worker left in its outbox
+  bool once = false;                                  // end where the coordinator says that nothing is left
+  double batch_s = 1.0;                               // hold about so many seconds of work per slot beyond what runs
+  double report_delay_s = 0.5;                        // gather completions so long where no slot waits
+  double farewell_s = 5.0;                            // for the last words after TERM where nobody answers
+  double end_margin_s = 30.0;                         // before the end of the allocation
+  std::optional<double> end_at = {};                  // of the allocation, on the clock of `now`
+  std::vector<wire::Completion> unacknowledged = {};  // what an earlier run of this worker left in its outbox
 };
 
 class Session {

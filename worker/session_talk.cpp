@@ -167,7 +167,7 @@ void Session::hear(const wire::Refusal& refusal) {
     return finish();
   }
   greet_again(greeting ? greet_delay_s_ : 0.0);
-  greet_delay_s_ = std::min(2.0 * greet_delay_s_, longest_greet_delay_s);
+  if (greeting) greet_delay_s_ = std::min(2.0 * greet_delay_s_, longest_greet_delay_s);
 }
 
 void Session::hear_order(wire::Order order, double wait_s) {

@@ -28,7 +28,7 @@ struct ShardOptions {
   std::string worker;  // name; part of the file name
   int records = 1000;  // then the next shard is begun
   std::uint64_t bytes = 4ull << 30;
-  std::function<void(const std::filesystem::path&)> after_sync;  // a door for tests: called between fsync and reading back
+  std::function<void(const std::filesystem::path&)> after_sync = {};  // a door for tests: called between fsync and reading back
 };
 
 class ShardWriter {
