@@ -35,7 +35,11 @@ CheckedRecord check_record_bytes(const std::string& bytes, const Expectation& ex
   CheckedRecord result;
   const std::string seal = broken_seal(bytes);
   result.checks.push_back(count_check("complete", !seal.empty(), seal.empty() ? "the seal fits" : seal));
-  Reading reading = read_leniently(bytes);
+  Reading reading;
+  if (seal.empty())
+    reading = read_leniently(bytes);
+  else
+    reading.violations.push_back("not looked at: HDF5 is not safe on damaged files");
   result.checks.push_back(count_check("grammar", reading.violations.size(),
                                       reading.violations.empty() ? "as the grammar states" : first_of(reading.violations)));
   if (reading.violations.empty()) {

@@ -29,8 +29,9 @@ struct CheckedRecord {
   bool passed() const;
 };
 
-// Rules of the file (complete, grammar), of the content (content.hpp) and of the expectation, in this order; those of the content only
-// where the grammar holds. A file that cannot be read at all is one failed check named "readable". Never crashes or hangs.
+// Rules of the file (complete, grammar), of the content (content.hpp) and of the expectation, in this order. HDF5 sees only a file whose
+// seal fits, and the content is looked at only where the grammar holds. A file that cannot be read at all is one failed check named
+// "readable".
 std::vector<Check> check_record(const std::filesystem::path& path, const Expectation& expectation = {});
 CheckedRecord check_record_bytes(const std::string& bytes, const Expectation& expectation = {});
 

@@ -1,5 +1,5 @@
 // Records in. The file is data from outside: nothing is allocated before its size is bounded, every chunk's checksum is verified, and a
-// file that is not exactly of the grammar is refused. Never crashes or hangs, whatever the bytes.
+// file that is not exactly of the grammar is refused. Damaged files are turned away by their seal before HDF5 sees them.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ struct Reading {
   std::vector<ContentCheck> checks;     // of the content, where there are no violations
   std::vector<std::string> violations;  // one sentence each; the record is whole only where there is none
 };
-Reading read_leniently(const std::string& bytes);
+Reading read_leniently(const std::string& bytes);  // whose seal was found to fit: HDF5 itself is not safe on damaged files
 
 // The record, sealed and exactly of the grammar. Errors: OUTPUT_BAD with the first violations, NODE_LOST or BAD_REQUEST where the file
 // cannot be read.

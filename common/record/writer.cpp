@@ -22,8 +22,10 @@ namespace {
 using grammar::Array;
 using grammar::DatasetSpec;
 
-constexpr int deflate_level = 3;            // of libdeflate: 2 % larger than 6, a third less time
-constexpr unsigned header_attributes = 64;  // kept in the checksummed object header up to this many
+constexpr int deflate_level = 3;  // of libdeflate: 2 % larger than 6, a third less time
+// Attributes and links are kept in the checksummed object header up to this many, not in a heap: smaller, and HDF5 1.10 frees memory that
+// it never set when it lists a damaged heap.
+constexpr unsigned header_attributes = 256, header_members = 256;
 
 // A dimension of a dataset that lies along a scale.
 struct Use {
@@ -71,6 +73,7 @@ h5::Handle plain_object(hid_t property_class) {
 h5::Handle plain_group(hid_t property_class) {
   h5::Handle list = plain_object(property_class);
   H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_link_phase_change(list, header_members, header_members / 2);
   return list;
 }
 

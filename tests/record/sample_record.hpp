@@ -19,11 +19,12 @@ struct Size {
 };
 
 inline Scene scene_of_size(const Size& size) {
-  const std::string text = R"({"schema": "fracfarm.scene/1", "method": "phase_field", "material": "pbx", "domain": {"width": 0.25, "height": 0.2},
+  const std::string text =
+      R"({"schema": "fracfarm.scene/1", "method": "phase_field", "material": "pbx", "domain": {"width": 0.25, "height": 0.2},
     "cracks": [[0.02, 0.1, 0.06, 0.1], [0.2, 0.05, 0.2, 0.08]],
     "loads": {"top": {"normal_velocity": 1.0}, "bottom": {"normal_velocity": 1.0}, "left": "free", "right": "free"},
     "time": {"frame_interval": 5e-6, "horizon": 1e-3}, "phase_field": {"cells": [)" +
-                           std::to_string(size.cells_x) + "," + std::to_string(size.cells_z) + "]}}";
+      std::to_string(size.cells_x) + "," + std::to_string(size.cells_z) + "]}}";
   return parse_scene(text).value();
 }
 
@@ -50,10 +51,12 @@ inline void fill_fields(PhaseFieldFrames& f, const Size& size, const Scene& scen
 inline Series series_of_size(const Size& size) {
   Series series;
   for (const ColumnRow& row : series_table)
-    if (row.required || row.name == "released_energy" || row.name == "stress_xx") series.columns.push_back({std::string(row.name), std::string(row.unit), {}});
+    if (row.required || row.name == "released_energy" || row.name == "stress_xx")
+      series.columns.push_back({std::string(row.name), std::string(row.unit), {}});
   for (int i = 0; i < size.rows; ++i) {
     const double t = 40e-6 * i / (size.rows - 1), s = static_cast<double>(i) / size.rows;
-    const double stress = 7e6 * (s < 0.6 ? s / 0.6 : std::max(0.0, 1.0 - (s - 0.6) / 0.1)), kinetic = 3.0 * s, elastic = stress * 1e-5, released = 20.0 * s * s;
+    const double stress = 7e6 * (s < 0.6 ? s / 0.6 : std::max(0.0, 1.0 - (s - 0.6) / 0.1)), kinetic = 3.0 * s, elastic = stress * 1e-5,
+                 released = 20.0 * s * s;
     for (Column& column : series.columns) {
       double value = 0.0;
       if (column.name == "step_time") value = t;
@@ -73,7 +76,8 @@ inline Record record(const Size& size = {}) {
   const Scene scene = scene_of_size(size);
   Record r;
   r.canonical_scene = canonical_text(scene);
-  r.provenance = {{"build_id", build_info().build_id}, {"compiler", build_info().compiler}, {"flags", build_info().flags}, {"attempt", "1"}};
+  r.provenance = {
+      {"build_id", build_info().build_id}, {"compiler", build_info().compiler}, {"flags", build_info().flags}, {"attempt", "1"}};
   r.key = job_key(r.canonical_scene, r.provenance["build_id"]);
   r.method = name_of(scene.method);
   r.material = material_name(scene);
