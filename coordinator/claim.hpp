@@ -16,6 +16,7 @@ inline constexpr std::uint64_t enough_history = 20;  // results of a class befor
 inline constexpr double history_margin = 1.5;        // of the p99
 inline constexpr double flush_s = 10.0;              // to judge, append, sync and report a record
 inline constexpr int most_jobs_a_claim = 1024;
+inline constexpr int most_jobs_a_slot = 32;  // of one claim, whatever a worker asks for
 
 struct Candidate {
   std::int64_t job = 0;

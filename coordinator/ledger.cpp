@@ -32,14 +32,14 @@ Result<void> prepare(Database& database) {
 
 }  // namespace
 
-Result<Ledger> Ledger::open(const FarmPaths& paths, bool make, double patience_s) {
+Result<Ledger> Ledger::open(const FarmPaths& paths, bool make, double patience_s, std::string_view holder) {
   std::error_code error;
   if (!make && !std::filesystem::exists(paths.ledger(), error))
     return fail(Fault::node_lost, fmt::format("there is no farm in {}: fracfarm submit or run makes one", paths.farm.string()));
   if (!std::filesystem::exists(paths.ledger_folder(), error)) std::filesystem::create_directories(paths.ledger_folder(), error);
   if (error) return fail(Fault::node_lost, fmt::format("cannot make {}: {}", paths.ledger_folder().string(), error.message()));
   if (Result<void> local = demand_local_disk(paths.ledger_folder()); !local) return tl::unexpected(local.error());
-  Result<LedgerLock> lock = LedgerLock::take(paths.lock(), patience_s);
+  Result<LedgerLock> lock = LedgerLock::take(paths.lock(), patience_s, holder);
   if (!lock) return tl::unexpected(lock.error());
   Database database = Database::open(paths.ledger());
   if (Result<void> ready = prepare(database); !ready) return tl::unexpected(ready.error());
@@ -131,9 +131,11 @@ void Ledger::complete(const Job& job, const Outcome& outcome, wire::LeaseId leas
   const std::string digest = bytes_of_hex(outcome.sha256);
   const auto kept_digest = has_record ? std::optional(Blob{digest}) : std::nullopt;
   database_.run(
-      "UPDATE jobs SET state = 'DONE', wait_s = NULL, lease_epoch = ?2, lease_counter = ?3, worker = nullif(?4, 0), verdict = ?5, time_to_failure = "
+      "UPDATE jobs SET state = 'DONE', wait_s = NULL, lease_epoch = ?2, lease_counter = ?3, worker = nullif(?4, 0), verdict = ?5, "
+      "time_to_failure = "
       "?6,"
-      " failure_rule = ?7, peak_stress = ?8, steps = ?9, cpu_s = ?10, wall_s = ?11, done_at = ?12, shard = nullif(?13, 0), offset = ?14, length = "
+      " failure_rule = ?7, peak_stress = ?8, steps = ?9, cpu_s = ?10, wall_s = ?11, done_at = ?12, shard = nullif(?13, 0), offset = ?14, "
+      "length = "
       "?15, sha256 = ?16"
       " WHERE id = ?1",
       job.id, lease.epoch, lease.counter, worker, name_of(outcome.verdict), outcome.time_to_failure, bounded(outcome.failure_rule),
@@ -152,7 +154,8 @@ void Ledger::learn(const Job& job, const Outcome& outcome) {
 
 void Ledger::record_attempt(const Job& job, const Attempt& attempt, double wall_s) {
   database_.run(
-      "INSERT INTO attempts(job, attempt, worker, fault, signature, message, began_at, ended_at) VALUES(?1, ?2, nullif(?3, 0), ?4, ?5, ?6, ?7, ?8)",
+      "INSERT INTO attempts(job, attempt, worker, fault, signature, message, began_at, ended_at) VALUES(?1, ?2, nullif(?3, 0), ?4, ?5, ?6, "
+      "?7, ?8)",
       job.id, job.attempts, job.worker, fault_row(attempt.fault).name, bounded(attempt.signature), bounded(attempt.message), job.leased_at,
       wall_s);
   if (attempt.fault != Fault::planned_stop) database_.run("UPDATE workers SET faults = faults + 1 WHERE id = ?1", job.worker);

@@ -25,7 +25,7 @@ class Ledger {
  public:
   // Takes the lock, opens (or, with `make`, makes) FARM/ledger/ledger.db, migrates. Errors: NODE_LOST where it is held by another or there
   // is none, BAD_REQUEST on a network file system or a later schema.
-  static Result<Ledger> open(const FarmPaths& paths, bool make, double patience_s = 2.0);
+  static Result<Ledger> open(const FarmPaths& paths, bool make, double patience_s = 2.0, std::string_view holder = holder_command);
   static Ledger in_memory();
 
   void begin() { database_.begin(); }

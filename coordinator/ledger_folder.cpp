@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/atomic_file.hpp"
+
 namespace fracfarm {
 namespace {
 
@@ -55,7 +57,7 @@ Result<void> demand_local_disk(const std::filesystem::path& folder, std::optiona
                   folder.string(), *network, folder.string()));
 }
 
-Result<LedgerLock> LedgerLock::take(const std::filesystem::path& file, double patience_s) {
+Result<LedgerLock> LedgerLock::take(const std::filesystem::path& file, double patience_s, std::string_view holder) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0) return fail(Fault::node_lost, fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
   LedgerLock lock(descriptor);
@@ -67,8 +69,13 @@ Result<LedgerLock> LedgerLock::take(const std::filesystem::path& file, double pa
       return fail(Fault::node_lost, fmt::format("the ledger in {} is held by another process", file.parent_path().string()));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  const bool written =
+      ::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, holder.data(), holder.size(), 0) == static_cast<ssize_t>(holder.size());
+  if (!written) return fail(Fault::node_lost, fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
   return lock;
 }
+
+std::string last_holder(const FarmPaths& paths) { return read_file(paths.lock(), 64).value_or(std::string()); }
 
 LedgerLock::~LedgerLock() {
   if (descriptor_ >= 0) ::close(descriptor_);

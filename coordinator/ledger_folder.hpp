@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/base/result.hpp"
 
@@ -25,11 +26,17 @@ std::optional<std::string> network_file_system(long statfs_type);
 // Refuses a folder on a network file system with words on where to put it. `type` overrides what statfs says (tests).
 Result<void> demand_local_disk(const std::filesystem::path& folder, std::optional<long> type = std::nullopt);
 
+inline constexpr std::string_view holder_coordinator = "coordinator";
+inline constexpr std::string_view holder_command = "command";
+// Who said last that it holds the ledger; empty where nobody ever did. Only a hint: the lock itself is the truth.
+std::string last_holder(const FarmPaths& paths);
+
 // An exclusive flock; held until it ends, also by a kill.
 class LedgerLock {
  public:
-  // Waits up to patience_s. Errors: NODE_LOST where another holds it or the file cannot be made.
-  static Result<LedgerLock> take(const std::filesystem::path& file, double patience_s);
+  // Waits up to patience_s; `holder` is written into the file, for whoever finds it locked. Errors: NODE_LOST where another holds it or the
+  // file cannot be made.
+  static Result<LedgerLock> take(const std::filesystem::path& file, double patience_s, std::string_view holder);
   ~LedgerLock();
   LedgerLock(LedgerLock&& other) noexcept;
   LedgerLock& operator=(LedgerLock&& other) noexcept;

@@ -33,7 +33,8 @@ class Reactor {
   // Ends leases whose time is over, wakes jobs that waited, makes jobs of campaigns. True: more is to be made, come back at once.
   bool tick(Instant now);
 
-  bool settled();  // nothing is left to do in the ledger
+  bool settled();                                         // nothing is left to do in the ledger
+  bool anybody_here() const { return !roster_.empty(); }  // workers that have said HELLO and not BYE
   std::uint64_t epoch() const { return epoch_; }
   std::vector<std::string> take_events();  // one line each, for the log
 

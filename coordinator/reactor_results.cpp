@@ -141,7 +141,8 @@ void Reactor::hand_out(Session& session, int free_slots, wire::Jobs& reply, Inst
   }
   const bool may_work = !session.stopped() && !wrong_build(session.build_id) && !wrong_build(settings_.build_id);
   if (may_work)
-    for (const Job& job : choose(session, std::min(free_slots, session.slots), now)) reply.assignments.push_back(assign(job, session, now));
+    for (const Job& job : choose(session, std::min(free_slots, most_jobs_a_slot * std::min(session.slots, most_jobs_a_claim)), now))
+      reply.assignments.push_back(assign(job, session, now));
   if (!reply.assignments.empty()) return;
   reply.order = settled() ? wire::Order::stop : wire::Order::wait;
   reply.wait_s = std::clamp(static_cast<double>(roster_.size()) / 200.0, 0.5, 10.0);

@@ -315,10 +315,11 @@ TEST_CASE("A cancelled job's holder is told to stop, and its late result is stal
   CHECK(farm.job(it.job).state == State::cancelled);
 }
 
-TEST_CASE("No worker gets more jobs than it has slots, whatever it asks for") {
-  Farm farm(20);
-  farm.hello("worker-a", "n1", "i1", {}, 3);
-  CHECK(farm.claim("worker-a", 1 << 30).assignments.size() == 3);
+TEST_CASE("No worker hoards jobs, whatever it asks for") {
+  Farm farm(most_jobs_a_slot + 10);
+  farm.hello("worker-a", "n1", "i1", {}, 1);
+  CHECK(farm.claim("worker-a", 1 << 30).assignments.size() == most_jobs_a_slot);
+  CHECK(farm.claim("worker-a", -3).assignments.empty());
 }
 
 TEST_CASE("A rejected scene is a result without a record") {
