@@ -97,27 +97,41 @@ std::string line_and_column(std::string_view text, std::size_t position) {
   return fmt::format("line {}, column {}", line, before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1);
 }
 
-void append_number(double value, std::string& out) {
-  assert(std::isfinite(value));
-  out += shortest(value + 0.0);  // -0 becomes 0: JSON readers lose its sign
+// How containers are spaced. Compact: no blanks at all.
+struct Layout {
+  std::string_view comma = ",", colon = ":";
+  std::size_t line = std::string::npos;  // containers longer than this break at their items
+};
+
+// Text of a container whose items are already texts.
+std::string enclose(const std::vector<std::string>& items, bool object, const Layout& layout, std::size_t indent) {
+  std::size_t length = indent + 2;
+  for (const std::string& item : items) length += item.size() + layout.comma.size();
+  const bool broken = layout.line != std::string::npos && length > layout.line;
+  const std::string open_line = broken ? "\n" + std::string(indent + 2, ' ') : "";
+  std::string out(1, object ? '{' : '[');
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) out += broken ? std::string_view(",") : layout.comma;
+    out += open_line + items[i];
+  }
+  if (broken) out += "\n" + std::string(indent, ' ');
+  return out + (object ? '}' : ']');
 }
 
-void append(const json& value, std::string& out) {
-  if (value.is_object() || value.is_array()) {
-    const bool object = value.is_object();
-    out += object ? '{' : '[';
-    bool first = true;
-    for (auto item = value.begin(); item != value.end(); ++item, first = false) {
-      if (!first) out += ',';
-      if (object) out += json(item.key()).dump(-1, ' ', false, json::error_handler_t::replace) + ':';
-      append(*item, out);
-    }
-    out += object ? '}' : ']';
-  } else if (value.is_number_float()) {
-    append_number(value.get<double>(), out);
-  } else {
-    out += value.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string text_of(const json& value, const Layout& layout, std::size_t indent) {
+  if (value.is_number_float()) {
+    assert(std::isfinite(value.get<double>()));
+    return shortest(value.get<double>() + 0.0);  // -0 becomes 0: JSON readers lose its sign
   }
+  if (!value.is_structured()) return value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::vector<std::string> items;
+  items.reserve(value.size());
+  for (auto item = value.begin(); item != value.end(); ++item) {
+    std::string key = value.is_object() ? json(item.key()).dump(-1, ' ', false, json::error_handler_t::replace) : "";
+    if (value.is_object()) key += layout.colon;
+    items.push_back(key + text_of(*item, layout, indent + 2));
+  }
+  return enclose(items, value.is_object(), layout, indent);
 }
 
 }  // namespace
@@ -134,10 +148,8 @@ Parsed<json> read_json(std::string_view text, std::string_view name, const JsonB
   return tl::unexpected(std::move(problems));
 }
 
-std::string compact_text(const json& value) {
-  std::string out;
-  append(value, out);
-  return out;
-}
+std::string compact_text(const json& value) { return text_of(value, {}, 0); }
+
+std::string pretty_text(const json& value) { return text_of(value, {.comma = ", ", .colon = ": ", .line = 120}, 0) + "\n"; }
 
 }  // namespace fracfarm

@@ -24,4 +24,7 @@ Parsed<nlohmann::json> read_json(std::string_view text, std::string_view name, c
 // No blanks, keys in byte order, numbers as shortest(); not-finite numbers are a programmer's error.
 std::string compact_text(const nlohmann::json& value);
 
+// The same values for people: containers that fit a line of 120 columns stand on one, the others break at their items. Ends with a newline.
+std::string pretty_text(const nlohmann::json& value);
+
 }  // namespace fracfarm
