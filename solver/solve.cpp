@@ -18,7 +18,7 @@ namespace {
 constexpr double progress_interval_s = 0.5;
 constexpr double checkpoint_interval_s = 300.0;  // a killed run loses at most this much
 
-enum class End { none, through_crack, horizon, wall_clock, stopped };
+enum class End { none, through_crack, horizon, wall_clock, step_budget, stopped };
 
 class Run {
  public:
@@ -57,13 +57,14 @@ class Run {
     if (n_ >= last_step_) return End::horizon;
     if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return End::stopped;
     if (elapsed_s() >= control_.wall_budget_s) return End::wall_clock;
+    if (control_.step_budget && n_ - first_step_ >= *control_.step_budget) return End::step_budget;
     return End::none;
   }
 
   Result<RunResult> finish(End end) {
     RunResult result;
     result.stopped = end == End::stopped;
-    if (end == End::stopped || end == End::wall_clock) {
+    if (end == End::stopped || end == End::wall_clock || end == End::step_budget) {
       if (auto saved = save(); !saved) return tl::unexpected(saved.error());
     } else if (!control_.checkpoint.empty()) {
       std::error_code ignored;
@@ -71,7 +72,7 @@ class Run {
     }
     if (result.stopped) return result;
     log_.close(*simulation_, n_);
-    fill(result, end == End::wall_clock ? "wall_clock" : "horizon");
+    fill(result, end == End::wall_clock ? "wall_clock" : end == End::step_budget ? "step_budget" : "horizon");
     return result;
   }
 
@@ -135,7 +136,10 @@ class Run {
     cpu_before_s_ = archive.get<double>();
     wall_before_s_ = archive.get<double>();
     archive.get_array(psi_initial_);
-    if (simulation_->load(archive, n_, dt_) && log_.load(archive, *simulation_) && archive.finished()) return true;
+    if (n_ >= 0 && simulation_->load(archive, n_, dt_) && log_.load(archive, *simulation_) && archive.finished()) {
+      first_step_ = n_;
+      return true;
+    }
     simulation_ = make_phase_field(scene_);
     log_ = RunLog(scene_, dt_);
     n_ = 0, cpu_before_s_ = wall_before_s_ = 0.0;
@@ -165,7 +169,8 @@ class Run {
   double dt_;
   long long last_step_;
   RunLog log_;
-  long long n_ = 0;  // steps made
+  long long n_ = 0;           // steps made
+  long long first_step_ = 0;  // of this attempt
   std::vector<float> psi_initial_;
   double cpu_before_s_ = 0.0, wall_before_s_ = 0.0;  // of the attempts that this one resumed
   double last_progress_s_ = 0.0, last_save_s_ = 0.0;

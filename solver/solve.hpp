@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RunControl {
   std::filesystem::path checkpoint;  // empty: none
   std::string checkpoint_key;        // a checkpoint of another key is ignored
   double wall_budget_s = 8.0 * 3600.0;
+  std::optional<long long> step_budget;                                       // steps of this attempt; ends like the wall budget
   const std::atomic<bool>* stop = nullptr;                                    // set by SIGTERM: save and end
   std::function<void(long long step, double time, double horizon)> progress;  // called about twice a second
   double step_scale = 1.0;                                                    // changes the result: 0.5 after SOLVER_NUMERIC

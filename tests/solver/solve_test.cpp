@@ -1,0 +1,179 @@
+#include "solver/solve.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "scenes.hpp"
+
+using namespace fracfarm;
+using namespace fracfarm::test;
+
+namespace {
+
+RunResult run(const Scene& scene) {
+  const auto result = solve(scene, {});
+  REQUIRE(result);
+  return *result;
+}
+
+}  // namespace
+
+TEST_CASE("a pulled plate with a crack breaks, and says when, where and how well the ledger closed") {
+  const RunResult result = run(cracked("pbx", 40));
+  CHECK(result.judgement.verdict == Verdict::failed);
+  CHECK(result.judgement.rule == "through_crack");
+  REQUIRE(result.judgement.time_to_failure);
+  CHECK(*result.judgement.time_to_failure == Approx(static_cast<double>(result.steps) * result.dt).epsilon(1e-12));
+  CHECK(result.energy_residual < 0.005);
+  CHECK(result.frames.front().time == 0.0);
+  CHECK(result.frames.front().psi == result.psi_initial);
+  std::vector<double> psi(result.psi_failure.begin(), result.psi_failure.end());
+  std::vector<unsigned char> visited(psi.size());
+  CHECK(joins_sides({psi, 41, 41}, through_crack_threshold, CrackDirection::left_right, visited));
+  CHECK(result.stages.count("damage") == 1);
+}
+
+TEST_CASE("a run repeated gives the same bits") {
+  const Scene scene = cracked("shale", 30);
+  const RunResult one = run(scene), two = run(scene);
+  CHECK(one.psi_failure == two.psi_failure);
+  CHECK(one.steps == two.steps);
+  for (std::size_t c = 0; c < one.series.columns.size(); ++c) CHECK(one.series.columns[c].values == two.series.columns[c].values);
+}
+
+TEST_CASE("nothing that is not pulled moves, and the run is censored at its horizon") {
+  const RunResult result = run(square("steel", 12));
+  CHECK(result.judgement.verdict == Verdict::censored);
+  CHECK(result.judgement.rule == "horizon");
+  CHECK(result.peak_stress == 0.0);
+  CHECK(static_cast<double>(result.steps) * result.dt >= 1e-4);
+}
+
+TEST_CASE("a step past the stability edge ends with evidence, never with a number") {
+  Scene scene = pulled("aluminum", 40);
+  scene.horizon = 4e-4;
+  scene.phase_field.plasticity = PlasticityModel::none;
+  scene.layers[0].material.Gc = 1e12;  // never damages, so nothing softens
+  scene.phase_field.cfl = 1.02;
+  const auto result = solve(scene, {});
+  REQUIRE_FALSE(result);
+  CHECK(result.error().fault == Fault::solver_numeric);
+  CHECK(result.error().message.find("step ") != std::string::npos);
+  CHECK(result.error().message.find("dt ") != std::string::npos);
+}
+
+TEST_CASE("half the step scale is half the step") {
+  Scene scene = square("pbx", 12);
+  RunControl control;
+  control.step_scale = 0.5;
+  const auto half = solve(scene, control);
+  REQUIRE(half);
+  CHECK(half->dt == 0.5 * run(scene).dt);
+}
+
+TEST_CASE("a run out of its wall budget is censored by the wall clock") {
+  RunControl control;
+  control.wall_budget_s = 0.0;
+  const auto result = solve(cracked("pbx", 12), control);
+  REQUIRE(result);
+  CHECK_FALSE(result->stopped);
+  CHECK(result->judgement.verdict == Verdict::censored);
+  CHECK(result->judgement.rule == "wall_clock");
+}
+
+TEST_CASE("a run told to go on to the horizon keeps the time and field of its through crack") {
+  Scene scene = cracked("pbx", 30);
+  const RunResult early = run(scene);
+  scene.stop = Stop::horizon;
+  const RunResult late = run(scene);
+  CHECK(late.steps > early.steps);
+  CHECK(late.judgement.time_to_failure == early.judgement.time_to_failure);
+  CHECK(late.psi_failure == early.psi_failure);
+}
+
+// A stretched plate let go at t = 0 rings: its mean stress falls through zero with no crack anywhere.
+TEST_CASE("a plate that loses its stress without a through crack fails by the stress drop, with the field of that time") {
+  Scene scene = square("pbx", 20);
+  scene.initial.strain = {0.0, 1e-3, 0.0};
+  scene.phase_field.dt = 4e-7;
+  scene.frame_interval = 4 * 4e-7;  // a frame at every row
+  scene.horizon = 6e-5;
+  const RunResult result = run(scene);
+  REQUIRE(result.judgement.verdict == Verdict::failed);
+  CHECK(result.judgement.rule == "stress_drop");
+  const auto frame =
+      std::find_if(result.frames.begin(), result.frames.end(), [&](const Frame& f) { return f.time == *result.judgement.time_to_failure; });
+  REQUIRE(frame != result.frames.end());
+  CHECK(frame->psi == result.psi_failure);
+  CHECK(result.frames.back().psi != result.psi_failure);
+}
+
+TEST_CASE("layers of one material give the bits of a plate of it, another material changes them") {
+  const Scene plain = cracked("pbx", 24);
+  Scene split = plain, mixed = plain;
+  split.layers = {{0.4 * plain.height, plain.layers[0].material}, plain.layers[0]};
+  mixed.layers = {{0.4 * plain.height, *find_material("aluminum")}, plain.layers[0]};
+  const RunResult one = run(plain);
+  CHECK(run(split).psi_failure == one.psi_failure);
+  CHECK(run(mixed).psi_failure != one.psi_failure);
+}
+
+TEST_CASE("a pull on a part of a side loads that part only, and the ledger still closes") {
+  Scene scene = square("pbx", 40);
+  SideLoad part = pull(1.0, 0.6 * scene.width);
+  part.from = 0.4 * scene.width;
+  set_load(scene, Side::top, part);
+  SideLoad fixed = pull(0.0, scene.width);
+  fixed.tangential = Tangential::fixed;
+  set_load(scene, Side::bottom, fixed);
+  const RunResult result = run(scene);
+  CHECK(result.series["reaction_top"].back() > 0.0);
+  CHECK(result.series["reaction_bottom"].back() > 0.0);
+  CHECK(result.energy_residual < 0.01);
+}
+
+TEST_CASE("a traction does the work that the ledger finds, and stretches the plate as Hooke says in the mean") {
+  Scene scene = square("pbx", 24);
+  SideLoad load;
+  load.to = scene.width;
+  load.traction = {0.0, 1e5};
+  load.ramp = 4e-5;
+  set_load(scene, Side::top, load);
+  load.traction = {0.0, -1e5};
+  set_load(scene, Side::bottom, load);
+  scene.horizon = 4e-4;
+  const RunResult result = run(scene);
+  CHECK(result.energy_residual < 0.002);
+  const auto stress = result.series["stress_zz"];
+  double sum = 0.0;
+  for (std::size_t r = stress.size() / 2; r < stress.size(); ++r) sum += stress[r];
+  CHECK(sum / static_cast<double>(stress.size() - stress.size() / 2) == Approx(1e5).epsilon(0.02));
+}
+
+TEST_CASE("turning a scene of an isotropic plate by a right angle turns its result, cells square or not") {
+  Scene upright = square("pbx", 20);
+  upright.width = 0.5 * upright.height;  // cells of h/2 x h
+  set_load(upright, Side::top, pull(2.0, upright.width));
+  set_load(upright, Side::bottom, pull(2.0, upright.width));
+  Scene lying = square("pbx", 20);
+  lying.height = 0.5 * lying.width;
+  lying.layers[0].below = lying.height;
+  set_load(lying, Side::left, pull(2.0, lying.height));
+  set_load(lying, Side::right, pull(2.0, lying.height));
+  const RunResult a = run(upright), b = run(lying);
+  CHECK(a.dt == b.dt);
+  const auto up = a.series["stress_zz"], side = b.series["stress_xx"];
+  REQUIRE(up.size() == side.size());
+  for (std::size_t r = 0; r < up.size(); ++r) CHECK(up[r] == Approx(side[r]).epsilon(1e-9));
+}
+
+TEST_CASE("the failure watch looks across the load") {
+  CHECK(solve(cracked("pbx", 8), {})->times.size() == 3);
+  Scene sideways = square("pbx", 30);
+  set_load(sideways, Side::left, pull(3.0, sideways.height));
+  set_load(sideways, Side::right, pull(3.0, sideways.height));
+  const double middle = 0.503 * sideways.width;
+  sideways.cracks = {{middle, 0.0, middle, 0.35 * sideways.height}};
+  CHECK(run(sideways).judgement.rule == "through_crack");
+}
