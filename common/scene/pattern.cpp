@@ -142,8 +142,13 @@ bool clip(Segment& s, double width, double height) {
   if (dx == 0.0 && dz == 0.0) return false;
   double t0 = 0.0, t1 = 1.0;
   if (!narrow(s.x0, dx, 0.0, width, t0, t1) || !narrow(s.z0, dz, 0.0, height, t0, t1)) return false;
-  // Ends that stay are not touched; the clamp puts a moved end on the side itself, so that clipping again finds it inside.
-  const auto at = [&](double t) { return std::array{std::clamp(s.x0 + t * dx, 0.0, width), std::clamp(s.z0 + t * dz, 0.0, height)}; };
+  // Ends that stay are not touched; an end that moved lies on the side that cut it to the bit, so that clipping again moves nothing.
+  const auto coordinate = [](double start, double step, double high, double t) {
+    if (step != 0.0 && t == (0.0 - start) / step) return 0.0;
+    if (step != 0.0 && t == (high - start) / step) return high;
+    return std::clamp(start + t * step, 0.0, high);
+  };
+  const auto at = [&](double t) { return std::array{coordinate(s.x0, dx, width, t), coordinate(s.z0, dz, height, t)}; };
   const auto [x0, z0] = t0 > 0.0 ? at(t0) : std::array{s.x0, s.z0};
   const auto [x1, z1] = t1 < 1.0 ? at(t1) : std::array{s.x1, s.z1};
   s = {.x0 = x0, .z0 = z0, .x1 = x1, .z1 = z1};
