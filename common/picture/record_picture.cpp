@@ -34,8 +34,8 @@ std::string in_units(double value, std::string_view unit) {
   const Prefix prefix = prefix_for(std::abs(value));
   const double scaled = value / prefix.factor;
   return fmt::format("{:.{}f} {}{}", scaled,
-                     std::abs(scaled) < 10.0    ? 2
-                     : std::abs(scaled) < 100.0 ? 1
+                     std::abs(scaled) < 9.995    ? 2
+                     : std::abs(scaled) < 99.95 ? 1
                                                 : 0,
                      prefix.sign, unit);  // 3 digits
 }
