@@ -66,7 +66,8 @@ Result<wire::Answer> FarmLink::ask(const std::string& verb, const nlohmann::json
   }
   SystemClock clock;
   own_->ledger.begin();
-  const wire::Answer answer = answer_ask(Desk{own_->ledger, own_->book, build_info().build_id, {clock.monotonic_s(), clock.wall_s()}, {}}, request);
+  const wire::Answer answer =
+      answer_ask(Desk{own_->ledger, own_->book, build_info().build_id, {clock.monotonic_s(), clock.wall_s()}, {}}, request);
   own_->ledger.commit();
   return answer;
 }

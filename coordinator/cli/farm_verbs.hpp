@@ -30,7 +30,7 @@ int report_unreachable(const Error& error, bool json);
 // else the exit status.
 struct Answered {
   int exit_code = 0;
-  std::string body;   // JSON text
+  std::string body;     // JSON text
   bool usable = false;  // to be printed for people
 };
 Answered ask_and_report(FarmLink& link, const std::string& verb, const nlohmann::json& arguments, bool json);

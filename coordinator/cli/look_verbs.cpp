@@ -38,10 +38,14 @@ int watch(const FarmOptions& options) {
     if (!answer) return report_unreachable(answer.error(), options.json);
     const json status = json::parse(answer->body);
     const bool settled = status.value("settled", false);
-    if (options.json) fmt::print("{}\n", status.dump());
-    else if (terminal) fmt::print("\x1b[H\x1b[2J{}", status_text(status, stdout));
-    else if (settled) line.finish(progress_text(status));
-    else line.show(progress_text(status));
+    if (options.json)
+      fmt::print("{}\n", status.dump());
+    else if (terminal)
+      fmt::print("\x1b[H\x1b[2J{}", status_text(status, stdout));
+    else if (settled)
+      line.finish(progress_text(status));
+    else
+      line.show(progress_text(status));
     std::fflush(stdout);
     if (settled) return exit_ok;
     link = fail(Fault::planned_stop, "");  // lets go of the ledger
@@ -79,12 +83,15 @@ int run_jobs(int argc, char** argv) {
   app.add_option("--limit", limit, "rows at most")->check(CLI::Range(1, 10000))->capture_default_str();
   if (const auto status = parse(app, argc, argv)) return *status;
   json arguments{{"limit", limit}, {"after", after}};
-  for (const auto& [name, value] : {std::pair{"state", &state}, {"material", &material}, {"load", &load}, {"class", &fault}, {"campaign", &campaign}})
+  for (const auto& [name, value] :
+       {std::pair{"state", &state}, {"material", &material}, {"load", &load}, {"class", &fault}, {"campaign", &campaign}})
     if (!value->empty()) arguments[name] = *value;
   return guarded(options, [&] {
     return look(options, "jobs", arguments, [](const json& answer) {
       if (answer["jobs"].empty()) return std::string("no such jobs\n");
-      const std::string more = answer.value("more", false) ? fmt::format("... more: --after {} or a larger --limit\n", answer["jobs"].back().value("id", 0)) : "";
+      const std::string more = answer.value("more", false)
+                                   ? fmt::format("... more: --after {} or a larger --limit\n", answer["jobs"].back().value("id", 0))
+                                   : "";
       return jobs_text(answer) + more;
     });
   });
@@ -100,9 +107,8 @@ int run_explain(int argc, char** argv) {
   app.add_flag("--scene", scene, "print its scene instead, to solve it by hand: fracfarm solve");
   if (const auto status = parse(app, argc, argv)) return *status;
   return guarded(options, [&] {
-    return look(options, "explain", {{"job", job}, {"scene", scene}}, [&](const json& answer) {
-      return scene ? answer.value("scene", "") + "\n" : explain_text(answer, stdout);
-    });
+    return look(options, "explain", {{"job", job}, {"scene", scene}},
+                [&](const json& answer) { return scene ? answer.value("scene", "") + "\n" : explain_text(answer, stdout); });
   });
 }
 

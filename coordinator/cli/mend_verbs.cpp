@@ -55,7 +55,8 @@ struct Selection {
 int run_retry(int argc, char** argv) {
   FarmOptions options;
   Selection selection;
-  CLI::App app{"Makes jobs ready again, at once and with every budget anew: quarantined, cancelled, held or waiting ones.", "fracfarm retry"};
+  CLI::App app{"Makes jobs ready again, at once and with every budget anew: quarantined, cancelled, held or waiting ones.",
+               "fracfarm retry"};
   add_farm_options(app, options);
   selection.add_to(app);
   if (const auto status = parse(app, argc, argv)) return *status;
@@ -76,7 +77,8 @@ int run_drain(int argc, char** argv) {
   FarmOptions options;
   std::vector<std::string> workers;
   bool dry_run = false;
-  CLI::App app{"Workers finish what they hold, take no more and end; without a name, all of them. Started again they work again.", "fracfarm drain"};
+  CLI::App app{"Workers finish what they hold, take no more and end; without a name, all of them. Started again they work again.",
+               "fracfarm drain"};
   add_farm_options(app, options);
   app.add_option("WORKER", workers, "names of workers or nodes, as fracfarm status prints them");
   app.add_flag("--dry-run", dry_run, "say who would be drained, change nothing");

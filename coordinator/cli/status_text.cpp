@@ -24,9 +24,9 @@ std::string class_table(const json& classes) {
   Table rows{{"material", "load", "done", "failed", "censored", "rejected", "running", "ready", "waiting", "quarantined", "cancelled"}};
   for (const json& it : classes) {
     const json &c = it["counts"], &v = it["verdicts"];
-    rows.push_back({it.value("material", ""), it.value("load", ""), number(n_of(c, "done")), number(n_of(v, "failed")), number(n_of(v, "censored")),
-                    number(n_of(v, "rejected")), number(n_of(c, "leased")), number(n_of(c, "ready")), number(n_of(c, "retry_wait")), number(n_of(c, "quarantined")),
-                    number(n_of(c, "cancelled"))});
+    rows.push_back({it.value("material", ""), it.value("load", ""), number(n_of(c, "done")), number(n_of(v, "failed")),
+                    number(n_of(v, "censored")), number(n_of(v, "rejected")), number(n_of(c, "leased")), number(n_of(c, "ready")),
+                    number(n_of(c, "retry_wait")), number(n_of(c, "quarantined")), number(n_of(c, "cancelled"))});
   }
   return table_text(rows);
 }
@@ -34,8 +34,9 @@ std::string class_table(const json& classes) {
 std::string worker_table(const json& workers) {
   Table rows{{"worker", "node", "state", "running", "slots", "done", "faults", "last heard", "time left"}};
   for (const json& it : workers)
-    rows.push_back({it.value("name", ""), it.value("node", ""), it.value("state", ""), std::to_string(it.value("running", 0)), std::to_string(it.value("slots", 0)),
-                    std::to_string(n_of(it, "done")), std::to_string(n_of(it, "faults")), duration_text(it.value("silent_s", 0.0)),
+    rows.push_back({it.value("name", ""), it.value("node", ""), it.value("state", ""), std::to_string(it.value("running", 0)),
+                    std::to_string(it.value("slots", 0)), std::to_string(n_of(it, "done")), std::to_string(n_of(it, "faults")),
+                    duration_text(it.value("silent_s", 0.0)),
                     it["remaining_s"].is_null() ? "-" : duration_text(it["remaining_s"].get<double>())});
   return table_text(rows);
 }
@@ -51,8 +52,10 @@ std::string fault_line(const json& faults) {
 
 std::string time_left_text(const json& status) {
   if (status.value("settled", false)) return "nothing left to do";
-  if (status["eta_s"].is_null()) return status.value("serving", false) ? "time left: not known yet" : "no coordinator runs: fracfarm run goes on";
-  return fmt::format("{} left, done at {}", duration_text(status["eta_s"].get<double>()), clock_text(status["finish_time"].get<std::string>()));
+  if (status["eta_s"].is_null())
+    return status.value("serving", false) ? "time left: not known yet" : "no coordinator runs: fracfarm run goes on";
+  return fmt::format("{} left, done at {}", duration_text(status["eta_s"].get<double>()),
+                     clock_text(status["finish_time"].get<std::string>()));
 }
 
 std::uint64_t all_jobs(const json& status) { return n_of(status, "total") + n_of(status, "unmade"); }
@@ -81,14 +84,19 @@ std::string progress_text(const json& status) {
 std::string status_text(const json& status, std::FILE* to) {
   const json& counts = status["counts"];
   const std::uint64_t done = n_of(counts, "done"), all = all_jobs(status);
-  std::string text = fmt::format("{} of {} jobs done ({:.1f} %) · {:.3g} jobs/s · {}\n", ink(std::to_string(done), Ink::bold, to), all, all ? 100.0 * static_cast<double>(done) / static_cast<double>(all) : 100.0,
+  std::string text = fmt::format("{} of {} jobs done ({:.1f} %) · {:.3g} jobs/s · {}\n", ink(std::to_string(done), Ink::bold, to), all,
+                                 all ? 100.0 * static_cast<double>(done) / static_cast<double>(all) : 100.0,
                                  status.value("rate_per_s", 0.0), time_left_text(status));
   for (const json& it : status["campaigns"])
-    if (it["expanded"] != it["total"]) text += fmt::format("campaign {} is being made into jobs: {} of {}\n", it.value("name", ""), n_of(it, "expanded"), n_of(it, "total"));
+    if (it["expanded"] != it["total"])
+      text += fmt::format("campaign {} is being made into jobs: {} of {}\n", it.value("name", ""), n_of(it, "expanded"), n_of(it, "total"));
   if (!status["classes"].empty()) text += "\n" + class_table(status["classes"]);
   if (const std::string faults = fault_line(status["faults"]); !faults.empty()) text += fmt::format("\nfaults so far: {}\n", faults);
-  if (const auto n = n_of(counts, "quarantined")) text += fmt::format("{}\n", ink(fmt::format("{} quarantined: fracfarm jobs --state quarantined, then fracfarm explain JOB", n), Ink::yellow, to));
-  for (const json& it : status["alarms"]) text += fmt::format("{} job {}: {}\n", ink(it.value("kind", ""), Ink::red, to), n_of(it, "job"), it.value("message", ""));
+  if (const auto n = n_of(counts, "quarantined"))
+    text += fmt::format(
+        "{}\n", ink(fmt::format("{} quarantined: fracfarm jobs --state quarantined, then fracfarm explain JOB", n), Ink::yellow, to));
+  for (const json& it : status["alarms"])
+    text += fmt::format("{} job {}: {}\n", ink(it.value("kind", ""), Ink::red, to), n_of(it, "job"), it.value("message", ""));
   if (!status["workers"].empty()) text += "\n" + worker_table(status["workers"]);
   return text;
 }
@@ -97,21 +105,26 @@ std::string jobs_text(const json& jobs) {
   Table rows{{"id", "material", "load", "pattern", "state", "verdict", "time-to-failure", "peak stress", "rule", "tries", "key"}};
   for (const json& it : jobs["jobs"]) {
     const bool done = !it["verdict"].is_null();
-    rows.push_back({std::to_string(n_of(it, "id")), it.value("material", ""), it.value("load", ""), it.value("pattern", ""), it.value("state", ""), done ? it.value("verdict", "") : "-",
-                    it["time_to_failure"].is_null() ? "-" : engineering(it["time_to_failure"].get<double>(), "s"), done ? engineering(it.value("peak_stress", 0.0), "Pa") : "-",
-                    done ? it.value("failure_rule", "") : "-", std::to_string(it.value("attempts", 0)), it.value("key", "").substr(0, 12)});
+    rows.push_back({std::to_string(n_of(it, "id")), it.value("material", ""), it.value("load", ""), it.value("pattern", ""),
+                    it.value("state", ""), done ? it.value("verdict", "") : "-",
+                    it["time_to_failure"].is_null() ? "-" : engineering(it["time_to_failure"].get<double>(), "s"),
+                    done ? engineering(it.value("peak_stress", 0.0), "Pa") : "-", done ? it.value("failure_rule", "") : "-",
+                    std::to_string(it.value("attempts", 0)), it.value("key", "").substr(0, 12)});
   }
   return table_text(rows);
 }
 
 std::string explain_text(const json& it, std::FILE* to) {
-  std::string text = fmt::format("{}  {} {}, {}, {}  ({})\n", ink(fmt::format("job {}", n_of(it, "id")), Ink::bold, to), it.value("method", ""), it.value("material", ""),
-                                 it.value("load", ""), it.value("pattern", ""), it.value("campaign_name", ""));
-  text += fmt::format("key     {}\nstate   {}\nwhy     {}\nto do   {}\n", it.value("key", ""), it.value("state", ""), it.value("why", ""), it.value("todo", ""));
+  std::string text =
+      fmt::format("{}  {} {}, {}, {}  ({})\n", ink(fmt::format("job {}", n_of(it, "id")), Ink::bold, to), it.value("method", ""),
+                  it.value("material", ""), it.value("load", ""), it.value("pattern", ""), it.value("campaign_name", ""));
+  text += fmt::format("key     {}\nstate   {}\nwhy     {}\nto do   {}\n", it.value("key", ""), it.value("state", ""), it.value("why", ""),
+                      it.value("todo", ""));
   if (it["history"].empty()) return text + "history: no fault\n";
   Table rows{{"try", "fault", "node", "signature", "ended", "message"}};
   for (const json& row : it["history"])
-    rows.push_back({std::to_string(row.value("attempt", 0)), row.value("fault", ""), row.value("node", ""), row.value("signature", ""), row.value("ended_at", ""), row.value("message", "")});
+    rows.push_back({std::to_string(row.value("attempt", 0)), row.value("fault", ""), row.value("node", ""), row.value("signature", ""),
+                    row.value("ended_at", ""), row.value("message", "")});
   return text + "\n" + table_text(rows);
 }
 
