@@ -176,7 +176,7 @@ void Daemon::hear_slots() {
 
 void Daemon::hear_slot(Place& place, const SlotEvent& event) {
   if (!place.run) return;
-  if (const auto* progress = std::get_if<SlotProgress>(&event)) return feed(JobProgress{place.run->job, progress->step});
+  if (const auto* progress = std::get_if<SlotProgress>(&event)) return hear_progress(*place.run, progress->step);
   if (std::holds_alternative<SlotReady>(event)) return;
   const Run run = *std::exchange(place.run, std::nullopt);
   if (const auto* solved = std::get_if<SlotSolved>(&event)) return finished(run, solved->summary);
@@ -184,8 +184,14 @@ void Daemon::hear_slot(Place& place, const SlotEvent& event) {
     log_.job(run.assignment.job, "fault", fmt::format("{}: {}", fault_row(failed->fault).name, failed->message));
     return feed(JobFailed{run.job, failed->fault, failed->message, failed->signature});
   }
-  log_.job(run.assignment.job, "stopped");
+  log_.job(run.assignment.job, "stopped", fmt::format("at step {}", run.step));
   feed(JobStopped{run.job});
+}
+
+void Daemon::hear_progress(Run& run, long long step) {
+  if (run.step < 0) log_.job(run.assignment.job, "progress", fmt::format("at step {}", step));
+  run.step = step;
+  feed(JobProgress{run.job, step});
 }
 
 void Daemon::finished(Run run, const Summary& summary) {
@@ -232,7 +238,7 @@ void Daemon::start(const StartJob& job) {
   log_.job(a.job, "started", fmt::format("attempt {} lease {}.{}", a.attempt, a.lease.epoch, a.lease.counter));
   std::error_code ignored;
   fs::remove(record_path(a.key), ignored);
-  place->run = Run{job.job, a};
+  place->run = Run{job.job, a, -1};
   place->slot.start({a.key, a.scene, record_path(a.key), checkpoint_path(a.key), a.wall_budget_s, a.attempt, a.step_scale});
 }
 

@@ -42,6 +42,7 @@ class Daemon {
   struct Run {  // what a slot is at
     JobId job = 0;
     wire::Assignment assignment;
+    long long step = -1;  // as it last reported
   };
   struct Place {
     Slot slot;
@@ -54,6 +55,7 @@ class Daemon {
   void hear_signals();
   void hear_slots();
   void hear_slot(Place& place, const SlotEvent& event);
+  void hear_progress(Run& run, long long step);
   void hear_keeper();
   void feed(const Event& event);
   void act(const Action& action);
