@@ -45,7 +45,7 @@ Result<void> solve_damage(const Model& model, State& state, Scratch& scratch, co
   for (int sweep = 0; sweep < damage_sweeps_limit; ++sweep) {
     ++state.sweeps;
     const double change = kernels.sweep(v, psi->data() + at, other->data() + at, weight.next());
-    if (change <= damage_tolerance) {  // of `psi`, which is therefore the field to keep; `other` went one sweep on
+    if (change <= model.damage_tolerance) {  // of `psi`, which is therefore the field to keep; `other` went one sweep on
       if (psi == &scratch.psi_other) std::swap(state.psi_previous, scratch.psi_other);
       std::swap(state.psi, state.psi_previous);
       return {};
@@ -53,7 +53,7 @@ Result<void> solve_damage(const Model& model, State& state, Scratch& scratch, co
     std::swap(psi, other);
   }
   return fail(Fault::solver_numeric, fmt::format("the phase-field equation did not converge: {} sweeps, limit of the correction {:.1e}",
-                                                 damage_sweeps_limit, damage_tolerance));
+                                                 damage_sweeps_limit, model.damage_tolerance));
 }
 
 }  // namespace fracfarm::phasefield

@@ -8,9 +8,6 @@
 
 namespace fracfarm::phasefield {
 
-// Largest |z - psi| over the nodes at which a field is accepted, z its Jacobi image; the error of psi is then at most tolerance / (1 -
-// radius).
-inline constexpr double damage_tolerance = 1e-8;
 inline constexpr int damage_sweeps_limit = 1000;
 
 // Needs scratch.source. Replaces state.psi and moves the old field to state.psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.

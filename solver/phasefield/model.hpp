@@ -10,6 +10,9 @@
 
 namespace fracfarm::phasefield {
 
+// Largest |z - psi| over the nodes at which a damage field is accepted, z its Jacobi image; the error of psi is then at most this / (1 - radius).
+inline constexpr double damage_tolerance = 1e-8;
+
 struct Model {
   Grid grid;
   double eta = 0.0;
@@ -21,6 +24,7 @@ struct Model {
   Boundary boundary;
   double stable_dt = 0.0;      // s; edge of the central difference scheme
   double jacobi_radius = 0.0;  // bound of the Jacobi iteration's spectral radius
+  double damage_tolerance = phasefield::damage_tolerance;  // only verification asks for another
 };
 
 Model build_model(const Scene& scene);
