@@ -15,10 +15,9 @@ std::size_t width_of(Type type) {
       return 4;
     case Type::f8:
       return 8;
-    case Type::u1:
-      return 1;
+    case Type::i1:
     case Type::text:
-      return 0;
+      return 1;
   }
   return 0;
 }
@@ -30,9 +29,10 @@ std::size_t Array::count() const {
 }
 
 std::vector<std::string> texts_of(const Array& array) {
+  const std::size_t width = array.dims.back();
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < array.count(); ++i) {
-    std::string text = array.bytes.substr(i * array.width, array.width);
+  for (std::size_t at = 0; width && at < array.bytes.size(); at += width) {
+    std::string text = array.bytes.substr(at, width);
     text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
     texts.push_back(std::move(text));
   }
@@ -46,13 +46,14 @@ std::vector<double> doubles_of(const Array& array) {
 }
 
 Array array_of(std::span<const double> values, std::vector<std::size_t> dims) {
-  return {Type::f8, 8, std::move(dims), std::string(reinterpret_cast<const char*>(values.data()), values.size_bytes())};
+  return {Type::f8, std::move(dims), std::string(reinterpret_cast<const char*>(values.data()), values.size_bytes())};
 }
 
 Array array_of(std::span<const std::string> texts) {
-  Array array{Type::text, 1, {texts.size()}, {}};
-  for (const std::string& text : texts) array.width = std::max(array.width, text.size());
-  for (const std::string& text : texts) array.bytes += text + std::string(array.width - text.size(), '\0');
+  std::size_t width = 1;
+  for (const std::string& text : texts) width = std::max(width, text.size());
+  Array array{Type::text, {texts.size(), width}, {}};
+  for (const std::string& text : texts) array.bytes += text + std::string(width - text.size(), '\0');
   return array;
 }
 

@@ -29,8 +29,8 @@ std::vector<std::size_t> plane(const Record& r) { return {r.phase_field.z.size()
 
 Array take_psi(const View& view) {
   const PhaseFieldFrames& f = view.record.phase_field;
-  Array array{Type::f4, 4, {f.psi.size(), f.z.size(), f.x.size()}, {}};
-  array.bytes.reserve(array.count() * 4);
+  Array array{Type::f4, {f.psi.size(), f.z.size(), f.x.size()}, {}};
+  array.bytes.reserve(array.count() * sizeof(float));
   for (const std::vector<float>& frame : f.psi) array.bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * 4);
   return array;
 }
@@ -93,7 +93,7 @@ Array take_check_texts(const View& view, Get get) {
 }
 
 Array take_passed(const View& view) {
-  Array array{Type::u1, 1, {view.checks.size()}, {}};
+  Array array{Type::i1, {view.checks.size()}, {}};
   for (const ContentCheck& check : view.checks) array.bytes += check.passed ? '\1' : '\0';
   return array;
 }
@@ -118,7 +118,7 @@ std::span<const DatasetRow> datasets() {
        give_psi},
       {{"/psi_initial", Type::f4, {z_dim, x_dim}, "1", "phase field at the start", "", psi_mantissa_bits},
        [](const View& v) {
-         return Array{Type::f4, 4, plane(v.record), bytes_of(v.record.phase_field.psi_initial)};
+         return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_initial)};
        },
        [](Record& r, const Array& a) { r.phase_field.psi_initial = values_of<float>(a); }},
       {{"/psi_failure",
@@ -129,23 +129,23 @@ std::span<const DatasetRow> datasets() {
         "",
         psi_mantissa_bits},
        [](const View& v) {
-         return Array{Type::f4, 4, plane(v.record), bytes_of(v.record.phase_field.psi_failure)};
+         return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_failure)};
        },
        [](Record& r, const Array& a) { r.phase_field.psi_failure = values_of<float>(a); }},
-      {{"/mask_initial", Type::u1, {z_dim, x_dim}, "1", "1 on nodes of the initial cracks, held at psi = 1"},
+      {{"/mask_initial", Type::i1, {z_dim, x_dim}, "1", "1 on nodes of the initial cracks, held at psi = 1"},
        [](const View& v) {
-         return Array{Type::u1, 1, plane(v.record), bytes_of(v.record.phase_field.mask_initial)};
+         return Array{Type::i1, plane(v.record), bytes_of(v.record.phase_field.mask_initial)};
        },
        [](Record& r, const Array& a) { r.phase_field.mask_initial = values_of<unsigned char>(a); }},
       {{"/cracks/segments", Type::f8, {"crack", "4"}, "m", "initial cracks as drawn: x0 z0 x1 z1"}, take_segments, give_segments},
-      {{"/failure/rule", Type::text, {"candidate"}, "", "criterion of each candidate time"}, take_rules, give_rules},
+      {{"/failure/rule", Type::text, {"candidate", "length"}, "", "criterion of each candidate time"}, take_rules, give_rules},
       {{"/failure/time", Type::f8, {"candidate"}, "s", "candidate times to failure, not a number where the criterion was not met"},
        take_times,
        give_times},
-      {{"/checks/name", Type::text, {"check"}, "", "rule that the content must satisfy"},
+      {{"/checks/name", Type::text, {"check", "length"}, "", "rule that the content must satisfy"},
        [](const View& v) { return take_check_texts(v, [](const ContentCheck& c) { return c.name; }); },
        nullptr},
-      {{"/checks/meaning", Type::text, {"check"}, "", "what the value is"},
+      {{"/checks/meaning", Type::text, {"check", "length"}, "", "what the value is"},
        [](const View& v) { return take_check_texts(v, [](const ContentCheck& c) { return c.meaning; }); },
        nullptr},
       {{"/checks/value", Type::f8, {"check"}, "", "worked out when the record was written"},
@@ -154,10 +154,12 @@ std::span<const DatasetRow> datasets() {
       {{"/checks/limit", Type::f8, {"check"}, "", "largest value allowed"},
        [](const View& v) { return take_checks(v, [](const ContentCheck& c) { return c.limit; }); },
        nullptr},
-      {{"/checks/passed", Type::u1, {"check"}, "1", "1 where value <= limit"}, take_passed, nullptr},
-      {{"/provenance/canonical_scene", Type::text, {"1"}, "", "the scene, canonical JSON"},
-       [](const View& v) { return array_of(std::array<std::string, 1>{v.record.canonical_scene}); },
-       [](Record& r, const Array& a) { r.canonical_scene = texts_of(a).front(); }},
+      {{"/checks/passed", Type::i1, {"check"}, "1", "1 where value <= limit"}, take_passed, nullptr},
+      {{"/provenance/canonical_scene", Type::text, {"length"}, "", "the scene, canonical JSON"},
+       [](const View& v) {
+         return Array{Type::text, {v.record.canonical_scene.size()}, v.record.canonical_scene};
+       },
+       [](Record& r, const Array& a) { r.canonical_scene = a.bytes; }},
   };
   return table;
 }

@@ -18,20 +18,19 @@ inline constexpr std::string_view schema = "fracfarm.record/1";
 inline constexpr std::string_view conventions = "CF-1.10";
 inline constexpr std::string_view licence = "CC-BY-4.0";
 inline constexpr std::size_t total_limit = std::size_t{1} << 30;  // bytes of all datasets together, decoded
-inline constexpr std::size_t text_limit = std::size_t{1} << 24;   // bytes of one text
 inline constexpr std::size_t attribute_limit = 60000;             // bytes of one text attribute
 inline constexpr std::size_t name_limit = 64;                     // characters of a column, provenance key or rule
 inline constexpr std::size_t columns_limit = 256;                 // members of one group
 
-enum class Type { f4, f8, u1, text };
+// text: one ASCII character an element, the last dimension is the longest text, as CF has it. Not fixed-length strings: netCDF 4.9 crashes
+// on arrays of them. i1, not u1: ParaView 5.11 refuses a file with unsigned bytes.
+enum class Type { f4, f8, i1, text };
 
-// Bytes of one element; a text's width is the dataset's own.
-std::size_t width_of(Type type);
+std::size_t width_of(Type type);  // bytes of one element
 
 // A dataset's content, in memory as in the file: row-major, little-endian, texts padded with NUL.
 struct Array {
   Type type = Type::f8;
-  std::size_t width = 8;  // bytes of one element
   std::vector<std::size_t> dims;
   std::string bytes;
 

@@ -69,7 +69,7 @@ std::optional<grammar::Value> read_number(hid_t object, const std::string& name,
 }
 
 std::vector<H5Z_filter_t> expected_filters(const DatasetSpec& spec) {
-  if (spec.type == Type::text || spec.type == Type::u1) return {H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+  if (!shuffled(spec.type)) return {H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
   return {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
 }
 
@@ -142,15 +142,10 @@ OpenDataset::OpenDataset(hid_t file, const DatasetSpec& spec, const std::map<std
 
 std::string OpenDataset::wrong_type() const {
   const Handle kind = type(H5Dget_type(dataset_));
-  const std::size_t width = kind ? H5Tget_size(kind) : 0;
-  if (spec_.type == Type::text && !(kind && is_text(kind, grammar::text_limit))) return "not a fixed-length ASCII text";
-  const Handle expected = file_type(spec_.type, spec_.type == Type::text ? width : grammar::width_of(spec_.type));
-  return kind && H5Tequal(kind, expected) > 0 ? "" : "not of the type that the grammar states";
+  return kind && H5Tequal(kind, file_type(spec_.type)) > 0 ? "" : "not of the type that the grammar states";
 }
 
 std::string OpenDataset::wrong_extents(const std::map<std::string, Array>& arrays) {
-  const Handle kind = type(H5Dget_type(dataset_));
-  width_ = H5Tget_size(kind);
   const Handle extents = space(H5Dget_space(dataset_));
   const int rank = extents ? H5Sget_simple_extent_ndims(extents) : -1;
   if (rank < 0 || static_cast<std::size_t>(rank) != spec_.dims.size())
@@ -192,8 +187,9 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
     why.push_back(spec_.path + ": " + std::move(what));
     return std::nullopt;
   };
-  Array array{spec_.type, width_, dims_, {}};
-  std::size_t bytes = width_;
+  Array array{spec_.type, dims_, {}};
+  const std::size_t width = grammar::width_of(spec_.type);
+  std::size_t bytes = width;
   for (std::size_t extent : dims_) {
     bytes *= extent;  // cannot wrap: checked against the budget before the next factor
     if (bytes > budget) return wrong(fmt::format("{} elements are more than a file of this size can hold", in_words(dims_)));
@@ -201,7 +197,7 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
   budget -= bytes;
   array.bytes.assign(bytes, '\0');
   if (bytes == 0) return array;
-  ChunkWalk walk(dims_, width_);
+  ChunkWalk walk(dims_, width);
   std::string raw(walk.chunk_bytes(), '\0'), stored;
   std::size_t number = 0;
   for (bool more = true; more; more = walk.next(), ++number) {
@@ -214,7 +210,7 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
     if (H5Dread_chunk(dataset_, H5P_DEFAULT, walk.offset(), &skipped, stored.data()) < 0)
       return wrong(fmt::format("chunk {} cannot be read", number));
     if (skipped) return wrong(fmt::format("chunk {} skipped a filter", number));
-    const std::string_view fault = decode_chunk(stored, shuffled(array) ? width_ : 1, raw);
+    const std::string_view fault = decode_chunk(stored, width, raw);
     if (!fault.empty()) return wrong(fmt::format("chunk {}: {}", number, fault));
     walk.scatter(raw, array.bytes);
   }

@@ -49,7 +49,6 @@ class OpenDataset {
   hid_t file_;
   grammar::DatasetSpec spec_;
   Handle dataset_;
-  std::size_t width_ = 0;
   std::vector<std::size_t> dims_;
   haddr_t address_ = HADDR_UNDEF;
 };

@@ -5,24 +5,21 @@
 
 namespace fracfarm::h5 {
 
-Handle file_type(grammar::Type type, std::size_t width) {
+Handle file_type(grammar::Type type) {
   switch (type) {
     case grammar::Type::f4:
       return h5::type(H5Tcopy(H5T_IEEE_F32LE));
     case grammar::Type::f8:
       return h5::type(H5Tcopy(H5T_IEEE_F64LE));
-    case grammar::Type::u1:
-      return h5::type(H5Tcopy(H5T_STD_U8LE));
+    case grammar::Type::i1:
+      return h5::type(H5Tcopy(H5T_STD_I8LE));
     case grammar::Type::text:
       break;
   }
-  Handle text = h5::type(H5Tcopy(H5T_C_S1));
-  H5Tset_size(text, width);
-  H5Tset_strpad(text, H5T_STR_NULLPAD);
-  return text;
+  return h5::type(H5Tcopy(H5T_C_S1));
 }
 
-bool shuffled(const grammar::Array& array) { return array.type != grammar::Type::text && array.width > 1; }
+bool shuffled(grammar::Type type) { return grammar::width_of(type) > 1; }
 
 Handle use_type() {
   Handle made = h5::type(H5Tcreate(H5T_COMPOUND, sizeof(UseRow)));

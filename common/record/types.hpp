@@ -11,8 +11,8 @@
 
 namespace fracfarm::h5 {
 
-Handle file_type(grammar::Type type, std::size_t width);
-bool shuffled(const grammar::Array& array);  // numbers wider than a byte
+Handle file_type(grammar::Type type);
+bool shuffled(grammar::Type type);  // numbers wider than a byte
 
 // One row of REFERENCE_LIST: which dataset uses the scale along which dimension.
 struct UseRow {

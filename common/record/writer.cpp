@@ -121,7 +121,7 @@ h5::Handle Writer::layout(const Array& array) {
   const std::vector<std::size_t> chunk = grammar::chunk_dims(array.dims);
   const std::vector<hsize_t> extents(chunk.begin(), chunk.end());
   must(H5Pset_chunk(list, static_cast<int>(extents.size()), extents.data()));
-  if (h5::shuffled(array)) must(H5Pset_shuffle(list));
+  if (h5::shuffled(array.type)) must(H5Pset_shuffle(list));
   must(H5Pset_deflate(list, deflate_level));
   must(H5Pset_fletcher32(list));
   H5Pset_fill_time(list, H5D_FILL_TIME_NEVER);
@@ -131,7 +131,7 @@ h5::Handle Writer::layout(const Array& array) {
 void Writer::dataset(const DatasetSpec& spec, const Array& array) {
   const std::vector<hsize_t> extents(array.dims.begin(), array.dims.end());
   const h5::Handle space = h5::space(must(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr)));
-  const h5::Handle type = h5::file_type(array.type, array.width);
+  const h5::Handle type = h5::file_type(array.type);
   const h5::Handle made = h5::dataset(must(H5Dcreate2(file_, spec.path.c_str(), type, space, H5P_DEFAULT, layout(array), H5P_DEFAULT)));
   if (!ok_) return;
   if (array.count()) fill(made, array);
@@ -144,11 +144,12 @@ void Writer::dataset(const DatasetSpec& spec, const Array& array) {
 
 // Every chunk compressed here and handed over whole, past HDF5's own slower filters.
 void Writer::fill(hid_t dataset, const Array& array) {
-  h5::ChunkWalk walk(array.dims, array.width);
+  const std::size_t width = grammar::width_of(array.type);
+  h5::ChunkWalk walk(array.dims, width);
   std::string raw(walk.chunk_bytes(), '\0');
   for (bool more = true; more; more = walk.next()) {
     walk.gather(array.bytes, raw);
-    const std::string stored = encode_chunk(raw, h5::shuffled(array) ? array.width : 1, deflate_level);
+    const std::string stored = encode_chunk(raw, width, deflate_level);
     must(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, walk.offset(), stored.size(), stored.data()));
   }
 }
