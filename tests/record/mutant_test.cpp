@@ -1,6 +1,10 @@
 // Damaged and forged files. Damage (a flipped bit, a lost block, a cut) must never be accepted with other content; a forged file, sealed
 // again after the damage, must never crash, hang or fool the reader either.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <optional>
 #include <random>
 
 #include "common/record/check.hpp"
@@ -44,7 +48,7 @@ struct Tally {
 };
 
 // `reseal`: a liar with a hash function, so that only HDF5's checksums and the grammar are left.
-Tally run(int mutants, bool reseal, unsigned seed) {
+Tally judge_mutants(int mutants, bool reseal, unsigned seed) {
   const std::string sound = record_bytes(sample::record()).value();
   std::mt19937 engine(seed);
   Tally tally;
@@ -62,18 +66,37 @@ Tally run(int mutants, bool reseal, unsigned seed) {
   return tally;
 }
 
+// In a child with a time limit, so that a crash or a hang is an answer. Nothing where the child did not end well.
+std::optional<Tally> judge_in_child(int mutants, bool reseal, unsigned seed) {
+  int ends[2];
+  if (::pipe(ends) != 0) return std::nullopt;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(60);
+    const Tally tally = judge_mutants(mutants, reseal, seed);
+    ::_exit(::write(ends[1], &tally, sizeof tally) == sizeof tally ? 0 : 1);
+  }
+  ::close(ends[1]);
+  Tally tally;
+  const bool heard = ::read(ends[0], &tally, sizeof tally) == sizeof tally;
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return heard && status == 0 ? std::optional<Tally>(tally) : std::nullopt;
+}
+
 }  // namespace
 
 TEST_CASE("no damaged file is accepted, unless the damage changed nothing") {
-  const Tally tally = run(1000, false, 1);
+  const Tally tally = judge_in_child(1600, false, 1).value();
   INFO("refused " << tally.refused << ", same content " << tally.same_content << ", other content " << tally.other_content);
   CHECK(tally.other_content == 0);
-  CHECK(tally.refused > 990);
+  CHECK(tally.refused > 1590);  // a byte replaced by itself harms nothing
 }
 
-TEST_CASE("no forged file with damaged content is accepted") {
-  const Tally tally = run(1000, true, 2);
-  WARN("of 1000 forged files " << tally.refused << " refused, " << tally.same_content << " read back with the same content");
+TEST_CASE("no forged file crashes the reader or is accepted with other content") {
+  const Tally tally = judge_in_child(400, true, 2).value();
+  INFO("refused " << tally.refused << ", same content " << tally.same_content << ", other content " << tally.other_content);
   CHECK(tally.other_content == 0);
-  CHECK(tally.refused > 700);  // the others: unused space between objects, which no checksum covers
+  CHECK(tally.refused > 280);  // the others hit unused space between objects, which no checksum covers
 }
