@@ -1,4 +1,4 @@
-// The loops over the grid, compiled once for each instruction set from one source (kernels.cpp) and chosen when a run starts.
+// The loops over the grid, compiled once for each instruction set from the same sources (kernels/) and chosen when a run starts.
 // Every path gives the same bits: no contraction, and sums of a row are made of `lanes` partial sums added in a fixed order.
 #pragma once
 
