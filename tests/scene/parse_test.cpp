@@ -1,4 +1,6 @@
 // The scene grammar: defaults, every block, and mistakes with key, value, limit and suggestion.
+#include <cmath>
+
 #include "tests/scene/scene_text.hpp"
 
 using namespace fracfarm;
@@ -174,6 +176,7 @@ TEST_CASE("a file without schema is of the first version, another version is ref
 }
 
 TEST_CASE("negative zero is zero") {
+  CHECK_FALSE(std::signbit(scene_of(with("/cracks/0", {-0.0, 0.1, 0.1, 0.1})).cracks.at(0).x0));
   CHECK(canonical_text(scene_of(with("/cracks/0", {-0.0, 0.1, 0.1, 0.1}))) ==
         canonical_text(scene_of(with("/cracks/0", {0, 0.1, 0.1, 0.1}))));
 }

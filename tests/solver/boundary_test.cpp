@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scenes.hpp"
+#include "tests/solver/scenes.hpp"
 #include "solver/watch.hpp"
 
 using namespace fracfarm;

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "common/base/atomic_file.hpp"
-#include "scenes.hpp"
+#include "tests/solver/scenes.hpp"
 #include "solver/solve.hpp"
 
 using namespace fracfarm;

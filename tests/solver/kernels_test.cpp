@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "scenes.hpp"
+#include "tests/solver/scenes.hpp"
 #include "solver/phasefield/phase_field.hpp"
 
 using namespace fracfarm;

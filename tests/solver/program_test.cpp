@@ -10,7 +10,7 @@
 #include "common/base/atomic_file.hpp"
 #include "common/scene/parse.hpp"
 #include "common/task/task.hpp"
-#include "scenes.hpp"
+#include "tests/solver/scenes.hpp"
 #include "solver/program/duration.hpp"
 #include "solver/solve.hpp"
 

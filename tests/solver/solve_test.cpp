@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scenes.hpp"
+#include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;

@@ -1,4 +1,4 @@
-#include "cases.hpp"
+#include "tests/verification/cases.hpp"
 
 #include <array>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench.hpp"
-#include "cases.hpp"
+#include "tests/verification/bench.hpp"
+#include "tests/verification/cases.hpp"
 #include "common/base/random.hpp"
 
 namespace fracfarm::verification {

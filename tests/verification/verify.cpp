@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cases.hpp"
+#include "tests/verification/cases.hpp"
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
 

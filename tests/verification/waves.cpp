@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench.hpp"
-#include "cases.hpp"
+#include "tests/verification/bench.hpp"
+#include "tests/verification/cases.hpp"
 #include "common/base/random.hpp"
 
 namespace fracfarm::verification {
