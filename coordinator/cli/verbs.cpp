@@ -20,6 +20,9 @@ int run_retry(int argc, char** argv);
 int run_cancel(int argc, char** argv);
 int run_drain(int argc, char** argv);
 
+// report_verbs.cpp
+int run_report(int argc, char** argv);
+
 // record_verbs.cpp
 int run_check(int argc, char** argv);
 int run_show(int argc, char** argv);
@@ -38,6 +41,7 @@ constexpr auto table = std::to_array<Verb>({
     {"jobs", "Look", "a table of jobs", run_jobs},
     {"explain", "Look", "what happened to one job, and what to do", run_explain},
     {"verify", "Look", "read every record again: do ledger and shards agree", run_verify},
+    {"report", "Look", "the campaign as one HTML page in pictures", run_report},
     {"retry", "Mend", "make jobs ready again", run_retry},
     {"cancel", "Mend", "take jobs out that are not done", run_cancel},
     {"drain", "Mend", "let workers finish and end", run_drain},
