@@ -122,32 +122,29 @@ void write_cell(Out out, const ReportPage& page, const ReportRun* run) {
                  stress_text(run->peak_stress), escaped(run->rule), run->job);
 }
 
-// One load: a column for each of the first patterns, initial cracks on top, then a row for each material.
+// One load: a row for each of the first patterns, its initial cracks and then a column for each material.
 void write_grid(Out out, const ReportPage& page, const std::string& load) {
   std::vector<std::string> patterns;
-  std::map<std::pair<std::string, std::string>, const ReportRun*> cells;  // material, pattern
+  std::map<std::pair<std::string, std::string>, const ReportRun*> cells;  // pattern, material
   for (const ReportRun& run : page.runs) {
     if (run.load != load || !page.pictures.contains(run.job)) continue;
     if (std::find(patterns.begin(), patterns.end(), run.pattern) == patterns.end()) patterns.push_back(run.pattern);
-    cells[{run.material, run.pattern}] = &run;
+    cells[{run.pattern, run.material}] = &run;
   }
   if (patterns.empty()) return;
   patterns.resize(std::min(patterns.size(), report_max_patterns));
-  fmt::format_to(out,
-                 "<h2>{} tension: initial cracks and the pattern at failure</h2><div class=scroll><div class=grid "
-                 "style='grid-template-columns:6rem repeat({},minmax(8rem,13rem))'>\n",
-                 escaped(load), patterns.size());
-  fmt::format_to(out, "<div class=name>initial</div>");
+  const std::vector<std::string> materials = materials_of(page);
+  fmt::format_to(out, "<h2>{} tension: initial cracks and the pattern at failure</h2><div class=scroll>", escaped(load));
+  fmt::format_to(out, "<div class=grid style='grid-template-columns:repeat({},minmax(8rem,12rem))'>\n<div class=name>initial</div>",
+                 materials.size() + 1);
+  for (const std::string& material : materials) fmt::format_to(out, "<div class=name>{}</div>", escaped(material));
   for (const std::string& pattern : patterns) {
-    const auto first = std::find_if(cells.begin(), cells.end(), [&](const auto& cell) { return cell.first.second == pattern; });
-    fmt::format_to(out, "<figure>");
-    write_picture(out, page.pictures.at(first->second->job).initial_png, "initial cracks");
+    const ReportRun* first = cells.lower_bound({pattern, ""})->second;
+    fmt::format_to(out, "\n<figure>");
+    write_picture(out, page.pictures.at(first->job).initial_png, "initial cracks");
     fmt::format_to(out, "<figcaption>{}</figcaption></figure>\n", escaped(pattern));
-  }
-  for (const std::string& material : materials_of(page)) {
-    fmt::format_to(out, "<div class=name>{}</div>", escaped(material));
-    for (const std::string& pattern : patterns) {
-      const auto cell = cells.find({material, pattern});
+    for (const std::string& material : materials) {
+      const auto cell = cells.find({pattern, material});
       write_cell(out, page, cell == cells.end() ? nullptr : cell->second);
     }
   }
