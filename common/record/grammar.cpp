@@ -78,6 +78,12 @@ void give_times(Record& r, const Array& array) {
     if (!std::isnan(times[i])) r.failure_times[i].time = times[i];
 }
 
+Array take_mask(const View& view) { return {Type::i1, plane(view.record), bytes_of(view.record.phase_field.mask_initial)}; }
+void give_mask(Record& r, const Array& array) { r.phase_field.mask_initial = values_of<unsigned char>(array); }
+
+Array take_scene(const View& view) { return {Type::text, {view.record.canonical_scene.size()}, view.record.canonical_scene}; }
+void give_scene(Record& r, const Array& array) { r.canonical_scene = array.bytes; }
+
 template <class Get>
 Array take_checks(const View& view, Get get) {
   std::vector<double> values;
@@ -132,11 +138,7 @@ std::span<const DatasetRow> datasets() {
          return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_failure)};
        },
        [](Record& r, const Array& a) { r.phase_field.psi_failure = values_of<float>(a); }},
-      {{"/mask_initial", Type::i1, {z_dim, x_dim}, "1", "1 on nodes of the initial cracks, held at psi = 1"},
-       [](const View& v) {
-         return Array{Type::i1, plane(v.record), bytes_of(v.record.phase_field.mask_initial)};
-       },
-       [](Record& r, const Array& a) { r.phase_field.mask_initial = values_of<unsigned char>(a); }},
+      {{"/mask_initial", Type::i1, {z_dim, x_dim}, "1", "1 on nodes of the initial cracks, held at psi = 1"}, take_mask, give_mask},
       {{"/cracks/segments", Type::f8, {"crack", "4"}, "m", "initial cracks as drawn: x0 z0 x1 z1"}, take_segments, give_segments},
       {{"/failure/rule", Type::text, {"candidate", "length"}, "", "criterion of each candidate time"}, take_rules, give_rules},
       {{"/failure/time", Type::f8, {"candidate"}, "s", "candidate times to failure, not a number where the criterion was not met"},
@@ -155,11 +157,7 @@ std::span<const DatasetRow> datasets() {
        [](const View& v) { return take_checks(v, [](const ContentCheck& c) { return c.limit; }); },
        nullptr},
       {{"/checks/passed", Type::i1, {"check"}, "1", "1 where value <= limit"}, take_passed, nullptr},
-      {{"/provenance/canonical_scene", Type::text, {"length"}, "", "the scene, canonical JSON"},
-       [](const View& v) {
-         return Array{Type::text, {v.record.canonical_scene.size()}, v.record.canonical_scene};
-       },
-       [](Record& r, const Array& a) { r.canonical_scene = a.bytes; }},
+      {{"/provenance/canonical_scene", Type::text, {"length"}, "", "the scene, canonical JSON"}, take_scene, give_scene},
   };
   return table;
 }

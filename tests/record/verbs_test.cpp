@@ -1,0 +1,111 @@
+// `fracfarm check` and `fracfarm show` as a person runs them.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/base/atomic_file.hpp"
+#include "common/record/writer.hpp"
+#include "tests/record/sample_record.hpp"
+#include "tests/record/temporary_folder.hpp"
+
+using namespace fracfarm;
+
+namespace {
+
+struct Ended {
+  int status = -1;
+  std::string out;
+};
+
+Ended fracfarm_run(const std::string& arguments) {
+  std::FILE* pipe = ::popen((std::string(FRACFARM_BIN_DIR) + "/fracfarm " + arguments + " 2>/dev/null").c_str(), "r");
+  Ended ended;
+  char buffer[4096];
+  while (const std::size_t got = std::fread(buffer, 1, sizeof buffer, pipe)) ended.out.append(buffer, got);
+  const int status = ::pclose(pipe);
+  ended.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ended;
+}
+
+struct Files {
+  test::TemporaryFolder folder;
+  std::string sound = folder.path() / "sound.h5", wrong = folder.path() / "wrong.h5", cut = folder.path() / "cut.h5";
+
+  Files() {
+    Record record = sample::record();
+    write_record(record, sound).value();
+    record.judgement.confidence = 0.99;
+    record.phase_field.mask_initial[3] = 1;
+    write_record(record, wrong).value();
+    std::ofstream(cut) << read_file(sound, 1 << 30).value().substr(0, 9000);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("check says that a sound record is sound and ends with 0") {
+  const Files files;
+  const Ended ended = fracfarm_run("check " + files.sound);
+  CHECK(ended.status == 0);
+  CHECK(ended.out.find("rules hold") != std::string::npos);
+}
+
+TEST_CASE("check names every broken rule and ends with 1") {
+  const Files files;
+  const Ended ended = fracfarm_run("check " + files.sound + " " + files.wrong + " " + files.cut);
+  CHECK(ended.status == 1);
+  for (const char* rule : {"judgement", "mask_held", "complete"}) CHECK(ended.out.find(std::string(rule) + ":") != std::string::npos);
+  CHECK(ended.out.find("damage_range") == std::string::npos);
+}
+
+TEST_CASE("check ends with 2 where a file cannot be read or nothing is asked") {
+  const Files files;
+  CHECK(fracfarm_run("check " + files.sound + " /nonexistent.h5").status == 2);
+  CHECK(fracfarm_run("check").status == 2);
+  CHECK(fracfarm_run("check --nonsense " + files.sound).status == 2);
+}
+
+TEST_CASE("check --key refuses another job's record") {
+  const Files files;
+  CHECK(fracfarm_run("check --key " + sample::record().key + " " + files.sound).status == 0);
+  CHECK(fracfarm_run("check --key 00 " + files.sound).status == 1);
+}
+
+TEST_CASE("check --json has every rule of every file") {
+  const Files files;
+  const auto json = nlohmann::json::parse(fracfarm_run("check --json " + files.sound + " " + files.wrong).out);
+  CHECK(json["passed"] == false);
+  REQUIRE(json["records"].size() == 2);
+  CHECK(json["records"][0]["passed"] == true);
+  CHECK(json["records"][0]["rules"].size() >= 18);
+  CHECK(json["records"][0]["rules"][0]["name"] == "complete");
+}
+
+TEST_CASE("show prints what the record holds, in words and as JSON") {
+  const Files files;
+  const Ended words = fracfarm_run("show " + files.sound);
+  CHECK(words.status == 0);
+  for (const char* word : {"pbx", "through_crack", "chosen", "peak stress", "kinetic_energy", "build_id"})
+    CHECK(words.out.find(word) != std::string::npos);
+  const auto json = nlohmann::json::parse(fracfarm_run("show --json " + files.sound).out);
+  CHECK(json["time_to_failure"] == 4e-5);
+  CHECK(json["times"]["through_crack"] == 4e-5);
+  CHECK(json["scene"]["schema"] == "fracfarm.scene/1");
+}
+
+TEST_CASE("show -o draws a picture") {
+  const Files files;
+  const std::string picture = files.folder.path() / "x.png";
+  CHECK(fracfarm_run("show " + files.sound + " -o " + picture).status == 0);
+  CHECK(read_file(picture, 1 << 30).value().starts_with("\x89PNG"));
+}
+
+TEST_CASE("show refuses what is no sound file") {
+  const Files files;
+  CHECK(fracfarm_run("show " + files.cut).status == 1);
+  CHECK(fracfarm_run("show /nonexistent.h5").status == 2);
+  CHECK(fracfarm_run("show").status == 2);
+}
