@@ -85,7 +85,7 @@ struct SessionOptions {
   int slots = 1;
   std::uint64_t memory_bytes = 0;
   bool once = false;                                  // end where the coordinator says that nothing is left
-  double batch_s = 1.0;                               // hold about so many seconds of work per slot beyond what runs
+  double short_job_s = 1.0;                           // jobs below it are asked for ahead, so that no slot waits for the network
   double report_delay_s = 0.5;                        // gather completions so long where no slot waits
   double farewell_s = 5.0;                            // for the last words after TERM where nobody answers
   double end_margin_s = 30.0;                         // before the end of the allocation
@@ -174,7 +174,9 @@ class Session {
 
   std::deque<Job> jobs_;
   JobId last_id_ = 0;
-  double mean_job_s_ = 0.0;   // of solved jobs, moving; 0: unknown
+  double mean_job_s_ = 0.0;    // of solved jobs, moving; 0: unknown
+  double round_trip_s_ = 0.0;  // of requests, moving
+  double posted_at_ = 0.0;
   int node_faults_ = 0;       // NODE_LOST in a row
   double claims_from_ = 0.0;  // no claims before, after too many of them
 

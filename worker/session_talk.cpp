@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t batch_limit = 256;   // completions, failures and returns in one request
 constexpr std::size_t spool_limit = 1000;  // completions not acknowledged, then no more claims
-constexpr int prefetch_limit = 32;         // jobs per slot beyond what runs
+constexpr double prefetch_limit = 32.0;    // jobs per slot beyond what runs
 constexpr double longest_wait_s = 60.0;
 constexpr double longest_greet_delay_s = 30.0;
 constexpr int refusal_limit = 5;
@@ -43,6 +43,7 @@ void Session::say_something() {
   if (asking_) return;
   if (auto request = next_request()) {
     asking_ = true;
+    posted_at_ = now_;
     actions_.push_back(Post{std::move(*request)});
   }
 }
@@ -85,11 +86,13 @@ wire::Request Session::make_next(int want) {
   return next;
 }
 
-// How many jobs to ask for: the free slots, and where jobs are short enough a little more, so that no slot waits for the network.
+// How many jobs to ask for: the free slots, and where jobs are short as many as are solved while asking. Not more: what one worker holds
+// ahead, another may be waiting for.
 int Session::wanted() const {
   if (phase_ != Phase::working || now_ < ask_at_ || now_ < claims_from_ || completed_.size() >= spool_limit) return 0;
-  const bool short_jobs = mean_job_s_ > 0.0 && mean_job_s_ < options_.batch_s;
-  const int ahead = short_jobs ? options_.slots * std::min(prefetch_limit, static_cast<int>(options_.batch_s / mean_job_s_)) : 0;
+  const bool short_jobs = mean_job_s_ > 0.0 && mean_job_s_ < options_.short_job_s;
+  const double solved_meanwhile = short_jobs ? std::clamp(std::ceil(round_trip_s_ / mean_job_s_), 1.0, prefetch_limit) : 0.0;
+  const int ahead = options_.slots * static_cast<int>(solved_meanwhile);
   const int queued = count(State::queued);
   const int free = options_.slots - count(State::running) - count(State::abandoned) - queued;
   if (free <= 0 && 2 * queued >= ahead) return 0;  // enough for now: ask in batches
@@ -108,6 +111,7 @@ bool Session::should_report(int want) const {
 void Session::on(const ReplyCame& event) {
   if (!asking_) return;
   asking_ = false;
+  round_trip_s_ = 0.8 * round_trip_s_ + 0.2 * (now_ - posted_at_);
   std::visit([&](const auto& reply) { hear(reply); }, event.reply);
 }
 
