@@ -111,7 +111,7 @@ ExitCode loop(Switchboard& desk, Reactor& reactor, const ServeOptions& options, 
 ExitCode serve(const ServeOptions& options, const std::atomic<bool>& stop, CoordinatorLog& log) {
   const FarmPaths paths{options.farm};
   SystemClock clock;
-  Result<Ledger> ledger = Ledger::open(paths, true, 5.0, holder_coordinator);
+  Result<Ledger> ledger = Ledger::open(paths, true, options.lock_patience_s, holder_coordinator);
   if (!ledger) return complain(log, ledger.error(), exit_unreachable);
   if (const Result<void> fits = demand_build(*ledger); !fits) return complain(log, fits.error(), exit_failed);
   Result<wire::Server> server = wire::Server::bind(options.bind, options.farm);

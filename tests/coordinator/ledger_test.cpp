@@ -138,6 +138,27 @@ TEST_CASE("A file that is not a ledger ends with an error, not with a crash") {
   CHECK_THROWS_AS(Ledger::open({folder.path}, false), LedgerError);
 }
 
+TEST_CASE("A full disk ends with an error and leaves what was committed") {
+  Folder folder;
+  {
+    Ledger ledger = Ledger::open({folder.path}, true).value();
+    ledger.begin();
+    const std::int64_t campaign = ledger.add_campaign("c", "{}", "b", 100000, 0.0);
+    ledger.add_job(job_named("kept", campaign));
+    ledger.commit();
+    ledger.reading().script("PRAGMA max_page_count = 40");  // the disk is full from here
+    ledger.begin();
+    const auto fill = [&] {
+      for (int n = 0; n < 5000; ++n) ledger.add_job(job_named(std::to_string(n), campaign));
+      ledger.commit();
+    };
+    CHECK_THROWS_WITH(fill(), Catch::Contains("full"));
+  }
+  Ledger again = Ledger::open({folder.path}, false).value();
+  CHECK(job_by_key(again.reading(), test::digest_of("kept")));
+  CHECK(count_rows(again.reading()).at(0).n == 1);
+}
+
 TEST_CASE("Learned times are means and an upper edge of the 99th percentile") {
   test::Farm farm(30);
   farm.hello("worker-a", "n1", "i1", {}, 64);
