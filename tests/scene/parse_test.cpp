@@ -1,6 +1,8 @@
 // The scene grammar: defaults, every block, and mistakes with key, value, limit and suggestion.
 #include <cmath>
+#include <filesystem>
 
+#include "common/base/atomic_file.hpp"
 #include "tests/scene/scene_text.hpp"
 
 using namespace fracfarm;
@@ -35,6 +37,16 @@ TEST_CASE("the scene page's own example is a scene") {
     "fdem": {"element_size": 0.003, "tier": "fast", "softening": "munjiza", "mesh_seed": 1, "mesh_file": null}})"));
   CHECK(scene.cracks.size() == 2);
   CHECK(scene.on(Side::top).at(0).normal_velocity == 1.0);
+}
+
+TEST_CASE("the sample scenes are scenes") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FRACFARM_SOURCE_DIR "/deploy/scenes")) {
+    INFO(entry.path());
+    CHECK(parse_scene(read_file(entry.path(), 1'000'000).value()));
+    ++count;
+  }
+  CHECK(count >= 3);
 }
 
 TEST_CASE("all mistakes of a scene are reported at once") {
