@@ -214,6 +214,17 @@ TEST_CASE("Only the current lease can fail or return a job") {
   CHECK(farm.fail_with("worker-a", it, Fault::solver_crash) == Receipt::stale);
 }
 
+TEST_CASE("A fault of an earlier lease says nothing about the current one, also from the same worker") {
+  Farm farm(1);
+  farm.hello("worker-a", "n1");
+  const wire::Assignment old = farm.one("worker-a");
+  farm.pass(34.0);
+  const wire::Assignment current = farm.one("worker-a");
+  REQUIRE(current.key == old.key);
+  CHECK(farm.fail_with("worker-a", old, Fault::solver_crash) == Receipt::stale);
+  CHECK(farm.job(current.job).state == State::leased);
+}
+
 TEST_CASE("A planned stop burns no retry, however often") {
   Farm farm(1, R"({"wall_clock": "1h", "attempts": 1})");
   farm.hello("worker-a", "n1");
