@@ -82,7 +82,8 @@ Result<Estimates> ask_farm(const std::filesystem::path& farm, const Campaign& ca
   if (!link) return tl::unexpected(link.error());
   const Result<wire::Answer> learned = link->ask("learned", json::object());
   if (!learned) return tl::unexpected(learned.error());
-  for (const json& it : json::parse(learned->body)["classes"])
+  const json body = json::parse(learned->body);
+  for (const json& it : body["classes"])
     estimates.learned[{it.value("method", ""), it.value("material", ""), it.value("load", "")}] = {it.value("mean_s", 0.0),
                                                                                                    it.value("mean_bytes", 0.0)};
   const Result<Known> known = ask_known(*link, campaign);
