@@ -57,7 +57,8 @@ struct View {
   std::span<const ContentCheck> checks;
 };
 
-// A dataset that every record has. `give` puts a read array into the record; null: the content follows from the rest and is compared.
+// A dataset that every record has. `give` puts a read array into the record; null: the content follows from the rest
+// and is compared where the same build wrote it (another may have other rules).
 struct DatasetRow {
   DatasetSpec spec;
   Array (*take)(const View&);

@@ -91,7 +91,8 @@ inline Record record(const Size& size = {}) {
                      {"five_step", five_step(times, r.series["total_stress"], r.series["kinetic_energy"])}};
   r.judgement = judge(r.failure_times, "horizon");
   r.peak_stress = *std::max_element(stress.begin(), stress.end());
-  r.energy_residual = 1e-4;
+  const auto residual = r.series["energy_residual"], work = r.series["external_work"];
+  r.energy_residual = *std::max_element(residual.begin(), residual.end()) / *std::max_element(work.begin(), work.end());
   return r;
 }
 

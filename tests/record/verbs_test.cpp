@@ -20,6 +20,7 @@ struct Ended {
   std::string out;
 };
 
+// `fracfarm ARGUMENTS`, its standard output kept.
 Ended fracfarm_run(const std::string& arguments) {
   std::FILE* pipe = ::popen((std::string(FRACFARM_BIN_DIR) + "/fracfarm " + arguments + " 2>/dev/null").c_str(), "r");
   Ended ended;
@@ -108,4 +109,24 @@ TEST_CASE("show refuses what is no sound file") {
   CHECK(fracfarm_run("show " + files.cut).status == 1);
   CHECK(fracfarm_run("show /nonexistent.h5").status == 2);
   CHECK(fracfarm_run("show").status == 2);
+}
+
+TEST_CASE("the record of a real run breaks no rule and is drawn, for brittle and ductile material") {
+  const Files files;
+  for (const char* material : {"pbx", "aluminum"}) {
+    const std::string scene = files.folder.path() / "scene.json", record = files.folder.path() / "real.h5",
+                      picture = files.folder.path() / "real.png";
+    std::ofstream(scene)
+        << R"({"schema": "fracfarm.scene/1", "method": "phase_field", "material": ")" << material
+        << R"(", "cracks": [[0.02, 0.12, 0.11, 0.12], [0.15, 0.11, 0.23, 0.11]], "domain": {"width": 0.25, "height": 0.25}, "phase_field": {"cells": [47, 47]},
+      "loads": {"top": {"normal_velocity": 1.0}, "bottom": {"normal_velocity": 1.0}, "left": "free", "right": "free"}, "time": {"frame_interval": 2e-5}})";
+    REQUIRE(fracfarm_run("solve " + scene + " -o " + record).status == 0);
+    const Ended checked = fracfarm_run("check " + record);
+    INFO(checked.out);
+    CHECK(checked.status == 0);
+    const auto shown = nlohmann::json::parse(fracfarm_run("show --json " + record + " -o " + picture).out);
+    CHECK(shown["verdict"] == "failed");
+    CHECK(shown["frames"] > 5);
+    CHECK(std::filesystem::file_size(picture) > 10000);
+  }
 }
