@@ -124,69 +124,59 @@ void bus_error(const Task& task) {
   std::cerr << page[4096];
 }
 
-const std::map<std::string, std::function<void(const Task&)>>& behaviours() {
-  static const std::map<std::string, std::function<void(const Task&)>> table{
-      {"well", solve_well},
-      {"numeric", [](const Task& t) { fault(t, Fault::solver_numeric, "psi is not finite at step 7"); }},
-      {"segfault", [](const Task&) { ::raise(SIGSEGV); }},
-      {"killed", [](const Task&) { ::raise(SIGKILL); }},
-      {"bus", bus_error},
-      {"exit",
-       [](const Task&) {
-         std::cerr << "no more\n";
-         std::exit(7);
-       }},
-      {"vanish", [](const Task&) { std::exit(0); }},
-      {"hang", [](const Task&) { wait_for_ever(); }},
-      {"work", work_until_stopped},
-      {"deaf",
-       [](const Task& t) {
-         ::signal(SIGTERM, SIG_IGN);
-         for (long long s = 1;; ++s) progress(t, s), ::usleep(10'000);
-       }},
-      {"memory", [](const Task&) { use_memory(); }},
-      {"garbage",
-       [](const Task&) {
-         std::puts("{\"kind\": ");
-         std::fflush(stdout);
-         wait_for_ever();
-       }},
-      {"endless line",
-       [](const Task&) {
-         for (;;) std::fputs("xxxxxxxxxxxxxxxx", stdout);
-       }},
-      {"other job",
-       [](const Task& t) {
-         Task other = t;
-         other.key = std::string(64, '0');
-         progress(other, 1);
-         wait_for_ever();
-       }},
-      {"grandchild", leave_a_grandchild},
-      {"truncated",
-       [](const Task& t) {
-         solve_badly(
-             t, [](std::string& b) { b.resize(b.size() / 2); }, t.key);
-       }},
-      {"bit flip",
-       [](const Task& t) {
-         solve_badly(
-             t, [](std::string& b) { b[b.size() / 2] = static_cast<char>(b[b.size() / 2] ^ 4); }, t.key);
-       }},
-      {"wrong job",
-       [](const Task& t) {
-         solve_badly(
-             t, [](std::string&) {}, std::string(64, '0'));
-       }},
-      {"no record",
-       [](const Task& t) {
-         Summary s;
-         s.record_sha256 = std::string(64, '0');
-         done(t, s);
-       }},
-  };
-  return table;
+void flip_a_bit(std::string& bytes) { bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4); }
+void keep_half(std::string& bytes) { bytes.resize(bytes.size() / 2); }
+
+void ignore_the_worker(const Task& task) {
+  ::signal(SIGTERM, SIG_IGN);
+  for (long long step = 1;; ++step) {
+    progress(task, step);
+    ::usleep(10'000);
+  }
 }
+
+void speak_of_another_job(Task task) {
+  task.key = std::string(64, '0');
+  progress(task, 1);
+  wait_for_ever();
+}
+
+void say_done_without_a_record(const Task& task) {
+  Summary summary;
+  summary.record_sha256 = std::string(64, '0');
+  done(task, summary);
+}
+
+void never_end_the_line() {
+  for (;;) std::fputs("xxxxxxxxxxxxxxxx", stdout);
+}
+
+using Behaviour = std::function<void(const Task&)>;
+const std::map<std::string, Behaviour> behaviours{
+    {"well", solve_well},
+    {"numeric", [](const Task& task) { fault(task, Fault::solver_numeric, "psi is not finite at step 7"); }},
+    {"segfault", [](const Task&) { ::raise(SIGSEGV); }},
+    {"killed", [](const Task&) { ::raise(SIGKILL); }},
+    {"bus", bus_error},
+    {"exit", [](const Task&) { std::cerr << "no more\n", std::exit(7); }},
+    {"vanish", [](const Task&) { std::exit(0); }},
+    {"hang", [](const Task&) { wait_for_ever(); }},
+    {"work", work_until_stopped},
+    {"deaf", ignore_the_worker},
+    {"memory", [](const Task&) { use_memory(); }},
+    {"garbage", [](const Task&) { std::puts("{\"kind\": "), std::fflush(stdout), wait_for_ever(); }},
+    {"endless line", [](const Task&) { never_end_the_line(); }},
+    {"other job", speak_of_another_job},
+    {"grandchild", leave_a_grandchild},
+    {"truncated", [](const Task& task) { solve_badly(task, keep_half, task.key); }},
+    {"bit flip", [](const Task& task) { solve_badly(task, flip_a_bit, task.key); }},
+    {"wrong job",
+     [](const Task& task) {
+       solve_badly(
+           task, [](std::string&) {}, std::string(64, '0'));
+     }},
+    {"no record", say_done_without_a_record},
+};
 
 }  // namespace
 
@@ -204,8 +194,8 @@ int main() {
   for (std::string line; std::getline(std::cin, line);) {
     const auto task = task_from_line(line);
     if (!task) return 2;
-    const auto found = behaviours().find(always ? always : task->scene);
-    if (found == behaviours().end()) return 2;
+    const auto found = behaviours.find(always ? always : task->scene);
+    if (found == behaviours.end()) return 2;
     found->second(*task);
   }
   return 0;
