@@ -20,7 +20,8 @@ int run_retry(int argc, char** argv);
 int run_cancel(int argc, char** argv);
 int run_drain(int argc, char** argv);
 
-// report_verbs.cpp
+// extract_verb.cpp, report_verb.cpp
+int run_extract(int argc, char** argv);
 int run_report(int argc, char** argv);
 
 // record_verbs.cpp
@@ -41,6 +42,7 @@ constexpr auto table = std::to_array<Verb>({
     {"jobs", "Look", "a table of jobs", run_jobs},
     {"explain", "Look", "what happened to one job, and what to do", run_explain},
     {"verify", "Look", "read every record again: do ledger and shards agree", run_verify},
+    {"extract", "Look", "copy records out of the store", run_extract},
     {"report", "Look", "the campaign as one HTML page in pictures", run_report},
     {"retry", "Mend", "make jobs ready again", run_retry},
     {"cancel", "Mend", "take jobs out that are not done", run_cancel},

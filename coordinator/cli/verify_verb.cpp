@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
@@ -13,7 +14,7 @@
 #include "common/record/check.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
-#include "coordinator/shard_audit.hpp"
+#include "coordinator/cli/record_places.hpp"
 
 namespace fracfarm::cli {
 namespace {
@@ -30,23 +31,10 @@ struct Orphan {
   ShardEntry entry;
 };
 
-Result<std::vector<RecordPlace>> all_places(FarmLink& link, const std::filesystem::path& farm) {
-  std::vector<RecordPlace> places;
-  std::int64_t after = 0;
-  for (bool more = true; more;) {
-    const Result<wire::Answer> answer = link.ask("records", {{"after", after}, {"limit", 5000}});
-    if (!answer) return tl::unexpected(answer.error());
-    const json body = json::parse(answer->body);
-    for (const json& it : body["records"]) {
-      places.push_back({it.value("id", std::uint64_t{0}), it.value("key", ""), farm / it.value("store", "") / it.value("shard", ""),
-                        it.value("offset", std::uint64_t{0}), it.value("length", std::uint64_t{0}), it.value("sha256", "")});
-      after = it.value("id", std::int64_t{0});
-    }
-    more = body.value("more", false);
-  }
+// In the order in which they lie, so that each shard is read once from end to end.
+void sort_by_place(std::vector<RecordPlace>& places) {
   std::sort(places.begin(), places.end(),
             [](const RecordPlace& a, const RecordPlace& b) { return std::tie(a.shard, a.offset) < std::tie(b.shard, b.offset); });
-  return places;
 }
 
 // What is wrong with one record, or empty.
@@ -108,10 +96,11 @@ int verify(const FarmOptions& options, bool digests_only) {
   {
     Result<FarmLink> link = FarmLink::open(options.farm);
     if (!link) return report_unreachable(link.error(), options.json);
-    Result<std::vector<RecordPlace>> found = all_places(*link, options.farm);
+    Result<std::vector<RecordPlace>> found = record_places(*link, options.farm, [](std::uint64_t) { return true; });
     if (!found) return report_unreachable(found.error(), options.json);
     places = std::move(*found);
   }  // lets go of the ledger: reading the records takes its time
+  sort_by_place(places);
   std::set<std::filesystem::path> stores;
   for (const RecordPlace& place : places) stores.insert(place.shard.parent_path());
   const std::vector<Orphan> orphans = find_orphans(places, stores);

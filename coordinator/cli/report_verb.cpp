@@ -14,6 +14,7 @@
 #include "common/record/reader.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
+#include "coordinator/cli/record_places.hpp"
 #include "coordinator/report.hpp"
 
 namespace fracfarm::cli {
@@ -23,12 +24,6 @@ using nlohmann::json;
 
 constexpr int picture_pixels = 192;
 constexpr std::size_t curve_points = 160;
-
-// Where a record lies, as the ledger's request `records` says it.
-struct RecordPlace {
-  std::filesystem::path shard;
-  std::uint64_t offset = 0, length = 0;
-};
 
 ReportRun run_of(const json& job) {
   ReportRun run;
@@ -88,35 +83,17 @@ Result<void> gather_runs(FarmLink& link, ReportPage& page) {
   }
 }
 
-Result<std::map<std::uint64_t, RecordPlace>> gather_places(FarmLink& link, const std::filesystem::path& farm,
-                                                           const std::set<std::uint64_t>& wanted) {
-  std::map<std::uint64_t, RecordPlace> places;
-  for (std::int64_t after = 0;;) {
-    const Result<wire::Answer> answer = link.ask("records", {{"after", after}, {"limit", 1000}});
-    if (!answer) return tl::unexpected(answer.error());
-    const json body = json::parse(answer->body);
-    for (const json& it : body.at("records")) {
-      after = it.at("id").get<std::int64_t>();
-      const auto job = static_cast<std::uint64_t>(after);
-      if (!wanted.contains(job)) continue;
-      const std::filesystem::path store = farm / it.at("store").get<std::string>();  // an absolute store stays as it is
-      places[job] = {store / it.at("shard").get<std::string>(), it.at("offset").get<std::uint64_t>(), it.at("length").get<std::uint64_t>()};
-    }
-    if (!body.at("more").get<bool>() || places.size() == wanted.size()) return places;
-  }
-}
-
-void draw_pictures(const std::map<std::uint64_t, RecordPlace>& places, ReportPage& page) {
+void draw_pictures(const std::vector<RecordPlace>& places, ReportPage& page) {
   ProgressLine progress;
   std::size_t done = 0;
-  for (const auto& [job, place] : places) {
-    progress.show(fmt::format("pictures {}/{}", ++done, places.size()));
-    const Result<std::string> bytes = read_part(place.shard, place.offset, place.length);
+  for (const RecordPlace& place : places) {
+    if (++done > 20) progress.show(fmt::format("pictures {}/{}", done, places.size()));
+    const Result<std::string> bytes = read_record(place);
     const Result<Record> record = bytes ? read_record_bytes(*bytes) : tl::unexpected(bytes.error());
     if (record)
-      page.pictures[job] = picture_of(*record);
+      page.pictures[place.job] = picture_of(*record);
     else
-      fmt::print(stderr, "{} job {} has no picture: {}\n", ink("note:", Ink::yellow, stderr), job, record.error().message);
+      fmt::print(stderr, "{} job {} has no picture: {}\n", ink("note:", Ink::yellow, stderr), place.job, record.error().message);
   }
 }
 
@@ -135,7 +112,8 @@ Result<ReportPage> make_page(const std::filesystem::path& farm) {
   page.counts = status.at("counts").get<std::map<std::string, std::uint64_t>>();
   page.faults = status.at("faults").get<std::map<std::string, std::uint64_t>>();
   if (auto gathered = gather_runs(*link, page); !gathered) return tl::unexpected(gathered.error());
-  const auto places = gather_places(*link, farm, jobs_to_draw(page.runs));
+  const std::set<std::uint64_t> drawn = jobs_to_draw(page.runs);
+  const auto places = record_places(*link, farm, [&](std::uint64_t job) { return drawn.contains(job); });
   if (!places) return tl::unexpected(places.error());
   draw_pictures(*places, page);
   return page;
