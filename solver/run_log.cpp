@@ -50,11 +50,11 @@ Result<void> RunLog::check_health(long long n) const {
     return fail(Fault::solver_numeric,
                 fmt::format("not finite at step {}, {:.6g} s: kinetic {:.4g}, elastic {:.4g}, released {:.4g}, external work {:.4g} J/m", n,
                             s.step_time, s.kinetic_energy, s.elastic_energy, s.released_energy, s.external_work));
-  if (n >= residual_grace_steps && std::abs(s.energy_residual) > residual_limit * largest_energy_)
+  if (n >= residual_grace_steps && std::abs(s.energy_residual) > energy_residual_limit * largest_energy_)
     return fail(
         Fault::solver_numeric,
         fmt::format("the energy ledger is open at step {}, {:.6g} s: residual {:.4g} J/m of {:.4g} J/m, limit {:.0f} %; dt {:.6g} s", n,
-                    s.step_time, s.energy_residual, largest_energy_, 100.0 * residual_limit, dt_));
+                    s.step_time, s.energy_residual, largest_energy_, 100.0 * energy_residual_limit, dt_));
   return {};
 }
 

@@ -10,8 +10,6 @@ namespace fracfarm {
 
 // One row every so many steps: fine enough that a stress drop moves by less than 1 % of the shortest runs, small in the record.
 inline constexpr long long steps_per_row = 4;
-// The ledger may miss by this share of the largest energy that was ever in it; runs that are well have 0.0003 to 0.004.
-inline constexpr double residual_limit = 0.05;
 inline constexpr long long residual_grace_steps = 64;  // the impact's first steps have little energy to compare with
 
 class RunLog {

@@ -257,7 +257,7 @@ constexpr auto rules = std::to_array<Rule>({
     {"scene", "identity fields that differ from the canonical scene", 0.0, scene_differences},
     {"key", "1 where the key is not the digest of scene and build", 0.0, wrong_key},
     {"ledger_sum", "largest error of the energy ledger's sum over the largest work or energy", 1e-9, wrong_ledger},
-    {"energy_closed", "largest energy residual over the largest work or energy", 0.05, open_ledger},
+    {"energy_closed", "largest energy residual over the largest work or energy", energy_residual_limit, open_ledger},
     {"energy_residual", "difference of the stored energy residual from the series' own", 1e-12, residual_difference},
     {"peak_stress", "relative distance of the stored peak from the series' own", 0.1, peak_difference},
     {"stress_drop", "seconds to the stress drop of the series", 0.0, drop_difference},

@@ -50,8 +50,9 @@ struct View {
 inline constexpr int scratch_rows = 12;
 
 struct EnergyDrop {
-  double released;  // by the change of g at fixed strain, J/m: the strain energies before and after the step averaged, second order in dt
-  double elastic;   // stored with the new g, J/m
+  double
+      released;    // by the change of g at fixed strain, J/m: geometric mean of the strain energies before and after the step, second order
+  double elastic;  // stored with the new g, J/m
 };
 
 struct StressSum {

@@ -59,6 +59,8 @@ double sweep(const View& v, const double* psi, double* other, double omega) {
   return largest;
 }
 
+// What a node releases in a step: (g_n - g_n+1) sqrt(W_n W_n+1). The scheme itself exchanges 1/2 eps_n : C : eps_n+1 there, which this is
+// where the strain grows in proportion; the arithmetic mean left the ledger four times as open (0.23 % against 0.06 % in shale).
 EnergyDrop degrade(const View& v, const double* psi) {
   EnergyDrop sum{0.0, 0.0};
   double *released = scratch_row(v, 0), *elastic = scratch_row(v, 1);
@@ -69,7 +71,7 @@ EnergyDrop degrade(const View& v, const double* psi) {
 #pragma omp simd
     for (Index i = 0; i < v.padded; ++i) {
       const double now = law::degradation(row[i], v.eta);
-      released[i] = (g[i] - now) * (0.5 * (before[i] + stored[i]));
+      released[i] = (g[i] - now) * __builtin_sqrt(larger(before[i] * stored[i], 0.0));
       elastic[i] = now * stored[i];
       g[i] = now;
     }
