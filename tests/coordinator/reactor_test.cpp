@@ -69,6 +69,16 @@ TEST_CASE("A lease under another key, of another peer or long over is abandoned"
   CHECK(farm.beat("worker-b", {held(it)}).rulings == std::vector{Ruling::abandon});
 }
 
+TEST_CASE("Each worker holds what it was given") {
+  Farm farm(2);
+  farm.hello("worker-a", "n1");
+  farm.hello("worker-b", "n2");
+  const wire::Assignment a = farm.one("worker-a"), b = farm.one("worker-b");
+  CHECK(farm.beat("worker-a", {held(a)}).rulings == std::vector{Ruling::adopt});
+  CHECK(farm.beat("worker-b", {held(b)}).rulings == std::vector{Ruling::adopt});
+  CHECK(farm.beat("worker-a", {held(b)}).rulings == std::vector{Ruling::abandon});
+}
+
 TEST_CASE("A new start of a worker that does not list its leases loses them, once") {
   Farm farm(2);
   farm.hello("worker-a", "n1", "i1");

@@ -146,6 +146,22 @@ TEST_CASE("Retry gives a quarantined job every budget anew; a dry run changes no
   CHECK(farm.job(it.job).state == State::retry_wait);
 }
 
+TEST_CASE("After a retry earlier faults neither use up a budget nor keep a node from the job") {
+  Farm farm(1);
+  farm.hello("worker-a", "n1");
+  for (int n = 0; n < 2; ++n) {
+    farm.fail_with("worker-a", farm.one("worker-a"), Fault::solver_numeric);
+    farm.pass(3.0);
+  }
+  REQUIRE(farm.job(1u).state == State::quarantined);
+  farm.hello("worker-b", "n2");
+  farm.ask("retry", {{"jobs", {1}}});
+  const wire::Assignment again = farm.one("worker-a");
+  CHECK(again.step_scale == 1.0);
+  farm.fail_with("worker-a", again, Fault::solver_numeric);
+  CHECK(farm.job(1u).state == State::retry_wait);
+}
+
 TEST_CASE("What cannot be tried again or cancelled is said, one reason each") {
   Farm farm(1);
   farm.hello("worker-a", "n1");
