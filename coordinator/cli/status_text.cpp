@@ -58,6 +58,12 @@ std::string time_left_text(const json& status) {
                      clock_text(status["finish_time"].get<std::string>()));
 }
 
+// How fast and how long still; a farm that nobody serves has no rate.
+std::string pace_text(const json& status) {
+  if (!status.value("serving", false) && status.value("rate_per_s", 0.0) == 0.0) return time_left_text(status);
+  return fmt::format("{:.3g} jobs/s · {}", status.value("rate_per_s", 0.0), time_left_text(status));
+}
+
 std::uint64_t all_jobs(const json& status) { return n_of(status, "total") + n_of(status, "unmade"); }
 
 }  // namespace
@@ -78,15 +84,14 @@ std::string progress_text(const json& status) {
   std::string line = fmt::format("{} of {} done, {} running", n_of(counts, "done"), all_jobs(status), n_of(counts, "leased"));
   if (const auto n = n_of(counts, "retry_wait")) line += fmt::format(", {} to be tried again", n);
   if (const auto n = n_of(counts, "quarantined")) line += fmt::format(", {} quarantined", n);
-  return fmt::format("{} · {:.3g} jobs/s · {}", line, status.value("rate_per_s", 0.0), time_left_text(status));
+  return fmt::format("{} · {}", line, pace_text(status));
 }
 
 std::string status_text(const json& status, std::FILE* to) {
   const json& counts = status["counts"];
   const std::uint64_t done = n_of(counts, "done"), all = all_jobs(status);
-  std::string text = fmt::format("{} of {} jobs done ({:.1f} %) · {:.3g} jobs/s · {}\n", ink(std::to_string(done), Ink::bold, to), all,
-                                 all ? 100.0 * static_cast<double>(done) / static_cast<double>(all) : 100.0,
-                                 status.value("rate_per_s", 0.0), time_left_text(status));
+  std::string text = fmt::format("{} of {} jobs done ({:.1f} %) · {}\n", ink(std::to_string(done), Ink::bold, to), all,
+                                 all ? 100.0 * static_cast<double>(done) / static_cast<double>(all) : 100.0, pace_text(status));
   for (const json& it : status["campaigns"])
     if (it["expanded"] != it["total"])
       text += fmt::format("campaign {} is being made into jobs: {} of {}\n", it.value("name", ""), n_of(it, "expanded"), n_of(it, "total"));
