@@ -7,7 +7,6 @@
 
 #include "common/scene/json_text.hpp"
 #include "common/scene/parse.hpp"
-#include "coordinator/campaign_block.hpp"
 
 namespace fracfarm {
 namespace {
@@ -44,11 +43,9 @@ std::string range_text(const JobBlock& block, CrackSet set) {
 }
 
 json axis_json(const SettingAxis& axis) {
-  if (axis.values.size() == 1)
-    if (json value = json::parse(axis.values.front()); !is_axis(axis.key, value)) return value;
   json list = json::array();
   for (const std::string& value : axis.values) list.push_back(json::parse(value));
-  return list;
+  return list.size() == 1 ? list.front() : list;
 }
 
 json block_json(const JobBlock& block) {

@@ -49,6 +49,16 @@ int nesting(const json& value) {
   return 1 + deepest;
 }
 
+// Whether a value in `set` is a list of values to sweep over.
+bool is_axis(std::string_view key, const json& value) {
+  for (const ListKey& row : list_keys) {
+    if (row.key != key) continue;
+    const bool objects = std::all_of(value.begin(), value.end(), [](const json& child) { return child.is_object(); });
+    return nesting(value) > row.depth || (value.is_array() && row.of_objects && !objects);
+  }
+  return value.is_array();
+}
+
 // One word or a list of words, each of the table and none twice.
 std::vector<std::string> read_words(Fields& fields, std::string_view key, std::span<const std::string_view> table) {
   std::vector<std::string> words;
@@ -76,7 +86,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> one_range(std::string_vie
   const auto number = [](std::string_view digits) -> std::optional<std::uint64_t> {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || value < 1 || value > max_sample_id) return std::nullopt;
+    if (error != std::errc() || end != digits.data() + digits.size() || value > max_sample_id) return std::nullopt;
     return value;
   };
   const std::size_t dash = text.find('-');
@@ -150,15 +160,6 @@ void read_set(Fields& block_fields, JobBlock& block) {
 }
 
 }  // namespace
-
-bool is_axis(std::string_view key, const json& value) {
-  for (const ListKey& row : list_keys) {
-    if (row.key != key) continue;
-    const bool objects = std::all_of(value.begin(), value.end(), [](const json& child) { return child.is_object(); });
-    return nesting(value) > row.depth || (value.is_array() && row.of_objects && !objects);
-  }
-  return value.is_array();
-}
 
 JobBlock read_block(const json& value, const std::string& path, ProblemList& problems) {
   JobBlock block;
