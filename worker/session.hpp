@@ -87,7 +87,7 @@ struct SessionOptions {
   bool once = false;                                  // end where the coordinator says that nothing is left
   double short_job_s = 1.0;                           // jobs below it are asked for ahead, so that no slot waits for the network
   double report_delay_s = 0.5;                        // gather completions so long where no slot waits
-  double farewell_s = 5.0;                            // for the last words after TERM where nobody answers
+  double farewell_s = 3.0;                            // for the last words after TERM where nobody answers
   double end_margin_s = 30.0;                         // before the end of the allocation
   std::optional<double> end_at = {};                  // of the allocation, on the clock of `now`
   std::vector<wire::Completion> unacknowledged = {};  // what an earlier run of this worker left in its outbox

@@ -218,6 +218,8 @@ void FarmBench::power_cut() const {
   for (const pid_t pid : processes_of(folder())) ::kill(pid, SIGKILL);
 }
 
+int FarmBench::processes_alive() const { return static_cast<int>(processes_of(folder()).size()); }
+
 int FarmBench::solvers_alive() const {
   int alive = 0;
   for (const pid_t pid : processes_of(folder()))

@@ -80,6 +80,7 @@ class FarmBench {
   std::vector<long long> steps_logged(const std::string& event) const;  // "at step N" of progress or stopped, in order, of one worker's log
   bool logged(const std::string& text) const;                           // by any worker
   void power_cut() const;                                               // SIGKILL to every process of this farm at once
+  int processes_alive() const;                                          // of this farm, daemons and solvers
   int solvers_alive() const;                                            // solver children of this farm's workers
 
   // The end of every test: all jobs are DONE exactly once, the counters equal a recount, the ledger agrees with the shards, no solver is

@@ -188,7 +188,7 @@ TEST_CASE("TERM ends in time even where no coordinator answers") {
   bench.give({assignment(1)});
   bench.feed(TerminateAsked{});
   bench.feed(JobStopped{bench.started[0].job});
-  bench.after(4.9);
+  bench.after(2.9);
   CHECK_FALSE(bench.finished);
   bench.after(0.2);
   CHECK(bench.finished == exit_stopped);
