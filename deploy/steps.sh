@@ -16,7 +16,13 @@ packages_of() {
   done
 }
 
-# step NAME COMMAND...: runs it with its output in a log, shows how far it is (the last [n/m] of the log), and how long it took.
+# how_far LOG SECONDS: "51 of 155, about 70 s left", by the last [n/m] in the log; nothing where it has none.
+how_far() {
+  tail -c 400 "$1" | tr '\r' '\n' | grep -aoE '\[ *[0-9]+/[0-9]+\]' | tail -n 1 | tr -d '[] ' |
+    awk -F/ -v s="$2" '$1 > 0 && $2 >= $1 {printf "%d of %d, about %d s left", $1, $2, s * ($2 - $1) / $1}'
+}
+
+# step NAME COMMAND...: runs it with its output in a log, shows how far it is and how long it took. Without a terminal: a line a minute.
 step() {
   name=$1
   shift
@@ -29,11 +35,11 @@ step() {
   while kill -0 $pid 2>/dev/null; do
     sleep 0.5
     ticks=$((ticks + 1))
-    far=$(tail -c 400 "$log" | tr '\r' '\n' | grep -aoE '\[ *[0-9]+/[0-9]+\]|^ *[0-9]+/[0-9]+ ' | tail -n 1)
+    took=$(($(date +%s) - start))
     if [ -t 1 ]; then
-      printf '\r\033[K  %s … %s %ss' "$name" "$far" "$(($(date +%s) - start))"
+      printf '\r\033[K  %s … %s s  %s' "$name" "$took" "$(how_far "$log" "$took")"
     elif [ $((ticks % 120)) -eq 0 ]; then
-      say "  $name … $far $(($(date +%s) - start)) s"
+      say "  $name … $took s  $(how_far "$log" "$took")"
     fi
   done
   wait $pid

@@ -104,6 +104,7 @@ TEST_CASE("the last words of a child are in the message") {
   CHECK(bench.wait_for<SlotFailed>().message == "the solver ended with status 7; its last words: no more");
 }
 
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer itself needs terabytes of address space
 TEST_CASE("a child beyond its memory limit is OUT_OF_MEMORY") {
   Bench bench;
   bench.options.memory_limit = 512u << 20;
@@ -112,6 +113,7 @@ TEST_CASE("a child beyond its memory limit is OUT_OF_MEMORY") {
   CHECK(failed.fault == Fault::out_of_memory);
   CHECK(failed.signature == "memory");
 }
+#endif
 
 TEST_CASE("a child that says nothing is killed as hung") {
   Bench bench;
