@@ -7,6 +7,7 @@
 
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
+#include "common/base/host.hpp"
 #include "common/wire/codec.hpp"
 #include "common/wire/endpoint.hpp"
 #include "common/wire/socket.hpp"
@@ -119,9 +120,10 @@ ExitCode serve(const ServeOptions& options, const std::atomic<bool>& stop, Coord
   Reactor reactor(*ledger, {build_info().build_id, options.lease_timeout_s / 6.0, options.lease_timeout_s, 512},
                   {clock.monotonic_s(), clock.wall_s()});
   Switchboard desk(std::move(*server), *ledger, reactor, clock);
-  if (const Result<void> told = wire::write_endpoint(options.farm, {desk.endpoint(), reactor.epoch(), ::getpid()}); !told)
+  const std::string endpoint = wire::reachable(desk.endpoint(), options.advertise.empty() ? host_name() : options.advertise);
+  if (const Result<void> told = wire::write_endpoint(options.farm, {endpoint, reactor.epoch(), ::getpid()}); !told)
     return complain(log, told.error(), exit_failed);
-  log.say(Level::info, fmt::format("serves {} at {}, epoch {}", options.farm.string(), desk.endpoint(), reactor.epoch()));
+  log.say(Level::info, fmt::format("serves {} at {}, epoch {}", options.farm.string(), endpoint, reactor.epoch()));
   return loop(desk, reactor, options, stop, log);
 }
 

@@ -17,6 +17,7 @@ struct ServeOptions {
   bool until_done = false;  // end when nothing is left and every worker has said BYE
   double lease_timeout_s = 30.0;
   double lock_patience_s = 5.0;  // a verb may hold the ledger for a moment
+  std::string advertise = {};    // host that others reach it by where it listens on every interface; empty: this host's name
 };
 
 // Serves until `stop`, or until nothing is left where it was asked to. Every failure of the ledger ends it: a lost fsync is never tried

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/host.hpp"
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
 #include "worker/identity.hpp"

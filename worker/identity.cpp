@@ -47,11 +47,6 @@ Identity& Identity::operator=(Identity&& other) noexcept {
   return *this;
 }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "node";
-}
-
 std::string random_instance() {
   std::array<unsigned char, 8> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return fmt::format("pid-{}", ::getpid());

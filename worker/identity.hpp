@@ -25,7 +25,6 @@ class Identity {
   int fd_ = -1;  // locked as long as this lives
 };
 
-std::string host_name();
 std::string random_instance();                      // one id for each start
 std::string name_of_node(const std::string& host);  // lower case, only what a key name may have, at most 40 bytes
 

@@ -34,7 +34,7 @@ std::string in_units(double value, std::string_view unit) {
   const Prefix prefix = prefix_for(std::abs(value));
   const double scaled = value / prefix.factor;
   return fmt::format("{:.{}f} {}{}", scaled,
-                     std::abs(scaled) < 9.995    ? 2
+                     std::abs(scaled) < 9.995   ? 2
                      : std::abs(scaled) < 99.95 ? 1
                                                 : 0,
                      prefix.sign, unit);  // 3 digits

@@ -8,6 +8,12 @@ namespace fracfarm::wire {
 
 using nlohmann::json;
 
+std::string reachable(const std::string& bound, const std::string& host) {
+  static constexpr std::string_view every_interface = "tcp://0.0.0.0:";
+  if (!bound.starts_with(every_interface)) return bound;
+  return "tcp://" + host + ":" + bound.substr(every_interface.size());
+}
+
 Result<void> write_endpoint(const std::filesystem::path& farm, const Endpoint& endpoint) {
   const json body{{"endpoint", endpoint.endpoint}, {"epoch", endpoint.epoch}, {"pid", endpoint.pid}};
   return write_atomically(farm / "endpoint.json", body.dump(2) + "\n");

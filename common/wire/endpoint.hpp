@@ -17,6 +17,9 @@ struct Endpoint {
   bool operator==(const Endpoint&) const = default;
 };
 
+// What others connect to: the endpoint as it was bound, with `host` in place of "every interface" (0.0.0.0).
+std::string reachable(const std::string& bound, const std::string& host);
+
 Result<void> write_endpoint(const std::filesystem::path& farm, const Endpoint& endpoint);
 // Errors: NODE_LOST where there is none ("no coordinator has run here") or it cannot be read.
 Result<Endpoint> read_endpoint(const std::filesystem::path& farm);

@@ -38,6 +38,8 @@ int main(int argc, char** argv) {
   app.add_option("--farm", options.farm, "folder of the farm; its folder 'ledger' must be on a local disk, or a link to one")
       ->capture_default_str();
   app.add_option("--bind", options.bind, "where to listen; port * is any; tcp://0.0.0.0:* lets other nodes in")->capture_default_str();
+  app.add_option("--advertise", options.advertise,
+                 "host name that other nodes reach it by, with --bind tcp://0.0.0.0:*; default: this host's");
   app.add_option("--lease-timeout", options.lease_timeout_s, "seconds without a beat after which a job goes to another worker")
       ->check(CLI::Range(0.5, 86400.0))
       ->capture_default_str();

@@ -10,7 +10,8 @@
 
 namespace fracfarm::phasefield {
 
-// Largest |z - psi| over the nodes at which a damage field is accepted, z its Jacobi image; the error of psi is then at most this / (1 - radius).
+// Largest |z - psi| over the nodes at which a damage field is accepted, z its Jacobi image; the error of psi is then at most this / (1 -
+// radius).
 inline constexpr double damage_tolerance = 1e-8;
 
 struct Model {
@@ -22,8 +23,8 @@ struct Model {
   std::vector<unsigned char> mask;  // columns * rows: 1 where psi is held at 1
   std::vector<std::size_t> pinned;  // the same nodes as indices of a Field
   Boundary boundary;
-  double stable_dt = 0.0;      // s; edge of the central difference scheme
-  double jacobi_radius = 0.0;  // bound of the Jacobi iteration's spectral radius
+  double stable_dt = 0.0;                                  // s; edge of the central difference scheme
+  double jacobi_radius = 0.0;                              // bound of the Jacobi iteration's spectral radius
   double damage_tolerance = phasefield::damage_tolerance;  // only verification asks for another
 };
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/solver/scenes.hpp"
 #include "solver/watch.hpp"
+#include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;

@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "common/base/atomic_file.hpp"
-#include "tests/solver/scenes.hpp"
 #include "solver/solve.hpp"
+#include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;

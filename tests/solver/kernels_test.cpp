@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "tests/solver/scenes.hpp"
 #include "solver/phasefield/phase_field.hpp"
+#include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;

@@ -10,9 +10,9 @@
 #include "common/base/atomic_file.hpp"
 #include "common/scene/parse.hpp"
 #include "common/task/task.hpp"
-#include "tests/solver/scenes.hpp"
 #include "solver/program/duration.hpp"
 #include "solver/solve.hpp"
+#include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;

@@ -35,8 +35,9 @@ TEST_CASE("shale pulled up and down breaks at the reference's step with its peak
   CHECK(*run->judgement.time_to_failure == Approx(1.7371192292526443e-4).epsilon(1e-9));
   CHECK(run->peak_stress == Approx(6528057.687).epsilon(1e-6));
   CHECK(at(run->series, "external_work", 400) == Approx(302.9133374).epsilon(1e-6));
-  CHECK(at(run->series, "released_energy", 400) == Approx(87.51235844).epsilon(1e-5));
-  CHECK(run->energy_residual < 0.002);
+  // The reference averages the step's two strain energies arithmetically, 0.08 % more than the geometric mean that closes the ledger.
+  CHECK(at(run->series, "released_energy", 400) == Approx(87.51235844).epsilon(1e-3));
+  CHECK(run->energy_residual < 0.0003);
 }
 
 TEST_CASE("tungsten pulled on four sides breaks from bottom to top at the reference's step") {
@@ -46,5 +47,5 @@ TEST_CASE("tungsten pulled on four sides breaks from bottom to top at the refere
   CHECK(*run->judgement.time_to_failure == Approx(7.695941969782992e-5).epsilon(1e-9));
   CHECK(run->peak_stress == Approx(102353736.337).epsilon(1e-6));
   CHECK(at(run->series, "kinetic_energy", 300) == Approx(2636.263852).epsilon(1e-6));
-  CHECK(run->energy_residual < 0.002);
+  CHECK(run->energy_residual < 0.0003);
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/random.hpp"
 #include "tests/verification/bench.hpp"
 #include "tests/verification/cases.hpp"
-#include "common/base/random.hpp"
 
 namespace fracfarm::verification {
 namespace {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/verification/cases.hpp"
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
+#include "tests/verification/cases.hpp"
 
 namespace fracfarm::verification {
 namespace {

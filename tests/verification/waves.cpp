@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/random.hpp"
 #include "tests/verification/bench.hpp"
 #include "tests/verification/cases.hpp"
-#include "common/base/random.hpp"
 
 namespace fracfarm::verification {
 namespace {
