@@ -6,10 +6,26 @@
 
 namespace fracfarm {
 
+namespace {
+
+// The damage equation is solved to a tolerance, so psi may leave [0, 1] by about as much; that is stored as the bound. More is stored as
+// it is, for the validator to find.
+constexpr double bound_tolerance = 1e-7;
+
+float stored_damage(double psi) {
+  if (psi < 0.0 && psi >= -bound_tolerance) return 0.0f;
+  if (psi > 1.0 && psi <= 1.0 + bound_tolerance) return 1.0f;
+  return static_cast<float>(psi);
+}
+
+}  // namespace
+
 std::vector<float> damage_field(const Simulation& simulation) {
   std::vector<double> values;
   simulation.copy_damage(values);
-  return std::vector<float>(values.begin(), values.end());
+  std::vector<float> stored(values.size());
+  std::transform(values.begin(), values.end(), stored.begin(), stored_damage);
+  return stored;
 }
 
 std::vector<CrackDirection> watched_directions(const Scene& scene) {
