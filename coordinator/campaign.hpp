@@ -1,4 +1,4 @@
-// A campaign: which jobs there are (scene page). TOML or JSON in, a numbered list of jobs out; scenes are made on demand, never stored.
+// A campaign: which jobs there are (SCENES.md). TOML or JSON in, a numbered list of jobs out; scenes are made on demand, never stored.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ std::optional<Verdict> verdict_by_name(std::string_view name);
 
 enum class CrackDirection { left_right, bottom_top };
 
-inline constexpr double through_crack_threshold = 0.9;  // psi above it is open crack (seed paper's pictures; physics page)
+inline constexpr double through_crack_threshold = 0.9;  // psi above it is open crack (seed paper's pictures; SCENES.md)
 inline constexpr double stress_drop_fraction = 0.1;
 inline constexpr double peak_prominence = 0.02;  // of a signal's range: what counts as a peak in the five-step pick
 
@@ -49,7 +49,7 @@ struct Judgement {
   double confidence = 0.0;                // in [0, 1], see judge()
 };
 
-// Picks by the physics page: through crack, else stress drop, else censored with `otherwise` as the rule.
+// Picks by SCENES.md: through crack, else stress drop, else censored with `otherwise` as the rule.
 // Confidence is the mean agreement of the other candidates with the choice: shorter over longer time where both are there, 0.5 where
 // only one of the two is, 1 where neither is; 0 where there is no other candidate. So 1 means that every criterion gives the same time.
 Judgement judge(std::span<const FailureTime> times, std::string_view otherwise);

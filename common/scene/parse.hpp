@@ -11,7 +11,7 @@ namespace fracfarm {
 
 inline constexpr std::string_view scene_schema = "fracfarm.scene/1";
 
-// JSON text -> Scene with every default filled in and every limit checked. Never throws, whatever the bytes. Defaults that the scene page
+// JSON text -> Scene with every default filled in and every limit checked. Never throws, whatever the bytes. Defaults that SCENES.md
 // leaves open: frame_interval 5 us; a horizon of the material, of several the longest; sides without a load are free.
 Parsed<Scene> parse_scene(std::string_view json_text);
 
@@ -30,7 +30,7 @@ std::string_view name_of(Side side);
 // "pbx", or "layers" where there is more than one.
 std::string material_name(const Scene& scene);
 
-// Conditions that the scene page allows but a user should know of, one sentence each: w_0/h < 1, nu -> 1/2, cracks closer than 4 w_0, dt
+// Conditions that SCENES.md allows but a user should know of, one sentence each: w_0/h < 1, nu -> 1/2, cracks closer than 4 w_0, dt
 // near the edge.
 std::vector<std::string> scene_warnings(const Scene& scene);
 

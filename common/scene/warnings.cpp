@@ -1,4 +1,4 @@
-// What the scene page allows but a user should know of: sentences, never refusals.
+// What SCENES.md allows but a user should know of: sentences, never refusals.
 #include <fmt/format.h>
 
 #include <algorithm>

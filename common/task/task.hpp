@@ -27,7 +27,7 @@ struct Task {
   double step_scale = 1.0;  // dt factor, 0.5 after SOLVER_NUMERIC
 };
 
-// What `solve --json` prints (scene page), and what a `done` report carries.
+// What `solve --json` prints (SCENES.md), and what a `done` report carries.
 struct Summary {
   Verdict verdict = Verdict::censored;
   std::optional<double> time_to_failure;  // s

@@ -1,4 +1,4 @@
-// Every message between workers, clients and the coordinator (farm page): plain structs. codec.hpp turns them into MessagePack and back.
+// Every message between workers, clients and the coordinator (FARM.md): plain structs. codec.hpp turns them into MessagePack and back.
 #pragma once
 
 #include <cstdint>

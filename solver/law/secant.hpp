@@ -1,5 +1,5 @@
 // Secant plasticity for isotropic metals: von Mises yield with linear hardening as a smaller shear modulus, bulk modulus kept.
-// Nonlinear elastic: it has no memory, so unloading retraces loading (physics page).
+// Nonlinear elastic: it has no memory, so unloading retraces loading.
 #pragma once
 
 #include <cmath>

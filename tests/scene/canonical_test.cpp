@@ -171,7 +171,7 @@ TEST_CASE("anything that can change a result changes the canonical text") {
     CHECK(canonical_text(scene_of(with(pointer, value))) != plain);
 }
 
-// Written down by hand from the scene page, not by the program.
+// Written down by hand from SCENES.md, not by the program.
 TEST_CASE("the canonical text of a small scene is these bytes") {
   CHECK(
       canonical_text(scene_of(good_scene())) ==

@@ -8,7 +8,7 @@
 using namespace fracfarm;
 using nlohmann::json;
 
-TEST_CASE("a small scene gets every default of the scene page") {
+TEST_CASE("a small scene gets every default of SCENES.md") {
   const Scene scene = scene_of(good_scene());
   CHECK(scene.phase_field == PhaseFieldSettings{.cells_x = 127,
                                                 .cells_z = 127,
@@ -26,7 +26,7 @@ TEST_CASE("a small scene gets every default of the scene page") {
   CHECK_FALSE(scene.sample);
 }
 
-TEST_CASE("the scene page's own example is a scene") {
+TEST_CASE("SCENES.md's own example is a scene") {
   const Scene scene = scene_of(json::parse(R"({
     "schema": "fracfarm.scene/1", "method": "phase_field", "domain": {"width": 0.25, "height": 0.25}, "material": "pbx",
     "cracks": [[0.05, 0.10, 0.09, 0.10], [0.12, 0.06, 0.12, 0.10]],

@@ -166,7 +166,7 @@ std::vector<Row> impedance() {
     }
     const double exact = std::sqrt(material.elasticity.C33 * material.density);
     rows.push_back(compare(fmt::format("{} stress behind the front, 1 m/s", dataset_materials[k]), "Pa", exact, sum / counted, 0.01,
-                           fmt::format("the page rounds it to {} MPa", targets_mpa[k])));
+                           fmt::format("published rounded to {} MPa", targets_mpa[k])));
   }
   return rows;
 }
