@@ -46,19 +46,25 @@ class ArchiveReader {
     if (size > rest_.size() / sizeof values[0]) failed_ = true;
     if (failed_) return;
     values.resize(size);
-    if (const char* from = take(size * sizeof values[0])) std::memcpy(values.data(), from, size * sizeof values[0]);
+    fill(values);
   }
   // Exactly as long as the array is.
   template <class Array>
   void get_array_like(Array& values) {
     if (get<std::uint64_t>() != values.size()) failed_ = true;
-    if (const char* from = take(values.size() * sizeof values[0])) std::memcpy(values.data(), from, values.size() * sizeof values[0]);
+    fill(values);
   }
   void reject() { failed_ = true; }
   bool failed() const { return failed_; }
   bool finished() const { return !failed_ && rest_.empty(); }
 
  private:
+  template <class Array>
+  void fill(Array& values) {
+    const std::size_t size = values.size() * sizeof values[0];
+    if (const char* from = take(size); from && size > 0) std::memcpy(values.data(), from, size);
+  }
+
   const char* take(std::size_t size) {
     if (failed_ || size > rest_.size()) {
       failed_ = true;

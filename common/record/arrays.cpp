@@ -41,7 +41,7 @@ std::vector<std::string> texts_of(const Array& array) {
 
 std::vector<double> doubles_of(const Array& array) {
   std::vector<double> values(array.count());
-  std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
+  if (!values.empty()) std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
   return values;
 }
 
