@@ -16,9 +16,9 @@ packages_of() {
   done
 }
 
-# how_far LOG SECONDS: "51 of 155, about 70 s left", by the last [n/m] in the log; nothing where it has none.
+# how_far LOG SECONDS: "51 of 155, about 70 s left", by the last [n/m] (ninja) or n/m Test (ctest) in the log; nothing where it has none.
 how_far() {
-  tail -c 400 "$1" | tr '\r' '\n' | grep -aoE '\[ *[0-9]+/[0-9]+\]' | tail -n 1 | tr -d '[] ' |
+  tail -c 4000 "$1" | tr '\r' '\n' | grep -aoE '\[ *[0-9]+/[0-9]+\]|[0-9]+/[0-9]+ Test' | tail -n 1 | tr -dc '0-9/' |
     awk -F/ -v s="$2" '$1 > 0 && $2 >= $1 {printf "%d of %d, about %d s left", $1, $2, s * ($2 - $1) / $1}'
 }
 
@@ -49,7 +49,7 @@ step() {
   took=$(($(date +%s) - start))
   if [ $status -ne 0 ]; then
     say "  $name: failed after $took s (status $status); the end of $log:"
-    tail -n 40 "$log"
+    tail -n "${FRACFARM_LOG_LINES:-40}" "$log"
     exit 1
   fi
   say "  $name: done in $took s"
