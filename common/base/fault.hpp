@@ -24,7 +24,6 @@ enum class FaultAction {
   ready_at_once,  // back to READY, nothing counted
   another_node,   // RETRY_WAIT with backoff, another node where there is one
   half_step,      // RETRY_WAIT once with half the time step
-  larger_memory,  // RETRY_WAIT with a larger memory class
   done_censored,  // DONE(CENSORED): a valid result
   quarantine,     // QUARANTINED: a person must look
 };
@@ -47,7 +46,7 @@ inline constexpr std::array<FaultRow, 8> fault_table{{
      "the record is truncated, reads back differently or breaks a rule"},
     {Fault::solver_crash, "SOLVER_CRASH", 3, false, FaultAction::another_node, "the solver ended by a signal or a non-zero exit, or hung"},
     {Fault::solver_numeric, "SOLVER_NUMERIC", 1, false, FaultAction::half_step, "not finite, energy ledger open or diverged"},
-    {Fault::out_of_memory, "OUT_OF_MEMORY", 2, false, FaultAction::larger_memory, "killed by the memory limit"},
+    {Fault::out_of_memory, "OUT_OF_MEMORY", 2, false, FaultAction::another_node, "killed by the memory limit"},
     {Fault::budget, "BUDGET", 0, false, FaultAction::done_censored, "wall clock or step budget reached; the last checkpoint is kept"},
     {Fault::bad_request, "BAD_REQUEST", 0, false, FaultAction::quarantine, "the scene or campaign is not one that this build can solve"},
 }};

@@ -26,9 +26,13 @@ Found find_records(const FarmOptions& options, const std::vector<std::string>& j
   Found found;
   Problems problems;
   for (const std::string& word : jobs) {
-    const Answered job = ask_and_report(*link, "explain", {{"job", word}}, false);
-    if (!job.usable) return {job.exit_code, {}};
-    const json body = json::parse(job.body);
+    const Result<wire::Answer> job = link->ask("explain", {{"job", word}});
+    if (!job) return {report_unreachable(job.error(), options.json), {}};
+    const json body = json::parse(job->body);
+    if (job->exit_code != exit_ok) {
+      problems.push_back({"job", word, "the id of a job, or the first characters of its key", body.value("message", "")});
+      continue;
+    }
     const auto place = record_place(*link, options.farm, body.value("id", std::uint64_t{0}));
     if (!place) return {report_unreachable(place.error(), options.json), {}};
     if (*place)

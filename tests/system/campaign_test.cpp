@@ -33,6 +33,11 @@ TEST_CASE("run does it all in one command, and again it finds nothing to do") {
   CHECK(farm.verb({"run", campaign}).status == 0);
   farm.check_all_done(6);
   CHECK(farm.starts() == starts);
+  const auto folder = farm.farm() / "extracted";
+  CHECK(farm.verb({"extract", "1", "6", "--output", folder.string()}).status == 0);
+  CHECK(std::filesystem::exists(folder / "job-1.h5"));
+  CHECK(std::filesystem::exists(folder / "job-6.h5"));
+  CHECK(farm.verb({"extract", "7", "--output", folder.string()}).status == 2);  // there is no job 7
 }
 
 TEST_CASE("a drained worker finishes what it runs, takes no more and ends well") {
