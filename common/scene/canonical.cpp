@@ -34,22 +34,6 @@ json loads_json(const Scene& scene) {
   return sides;
 }
 
-json phase_field_json(const Scene& scene) {
-  const PhaseFieldSettings& settings = scene.phase_field;
-  json out{{"cells", {settings.cells_x, settings.cells_z}},
-           {"residual_stiffness", settings.residual_stiffness},
-           {"crack_seeding", spelled(seeding_words, settings.crack_seeding)},
-           {"integrator", "explicit"},
-           {"quadrature", "gll"},
-           {"split", "seed"},
-           {"plasticity", spelled(plasticity_words, effective_plasticity(scene))},
-           {"precision", "double"}};
-  const LengthScale& scale = settings.length_scale;
-  out["length_scale"] = scale.kind == LengthScale::Kind::metres ? json(scale.metres) : json(spelled(length_scale_words, scale.kind));
-  settings.dt ? out["dt"] = *settings.dt : out["cfl"] = settings.cfl;
-  return out;
-}
-
 json scene_json(const Scene& scene) {
   json out{{"schema", scene_schema},
            {"method", name_of(scene.method)},

@@ -20,10 +20,8 @@ using nlohmann::json;
 constexpr std::size_t max_cracks = 10'000;
 constexpr std::uint64_t max_nodes = 4'000'000;
 constexpr double max_frames = 10'000;
-constexpr double max_stored_values = 1e9;  // nodes times frames, 4 GB as float
-constexpr double max_steps = 1e8;
+constexpr double max_stored_values = 1e9;          // nodes times frames, 4 GB as float
 constexpr double default_frame_interval = 5.0e-6;  // s; the published dataset's own by its file sizes
-constexpr double max_cfl = 1.2;                    // past the edge, so that a test can show the instability
 constexpr double max_aspect = 10.0;                // of a cell
 
 void read_domain(Fields& top, Scene& scene) {
@@ -62,7 +60,7 @@ void read_loads(Fields& top, Scene& scene) {
   Fields fields(*value, "loads", top.problems());
   for (const auto& [name, side] : side_words)
     if (const json* load = fields.value(name))
-      scene.loads[static_cast<std::size_t>(side)] = read_side(*load, fields.path(name), side_length(scene, side), top.problems());
+      scene.loads[static_cast<std::size_t>(side)] = read_side(*load, fields.path(name), side, side_length(scene, side), top.problems());
   fields.done();
 }
 
@@ -92,56 +90,6 @@ void fill_times(Scene& scene) {
   if (scene.horizon == 0.0)
     for (const Layer& layer : scene.layers) scene.horizon = std::max(scene.horizon, layer.material.default_horizon);
   if (scene.frame_interval == 0.0) scene.frame_interval = default_frame_interval;
-}
-
-void read_cells(Fields& fields, PhaseFieldSettings& settings) {
-  const json* value = fields.value("cells");
-  if (!value) return;
-  if (!value->is_array() || value->size() != 2) {
-    fields.problems().add(fields.path("cells"), printed(*value), "a list of 2 integers: across and up");
-    return;
-  }
-  std::array<int*, 2> targets{&settings.cells_x, &settings.cells_z};
-  for (std::size_t i = 0; i < 2; ++i)
-    if (const auto count = read_integer((*value)[i], key_path(fields.path("cells"), i), 1, 100'000, fields.problems()))
-      *targets[i] = static_cast<int>(*count);
-}
-
-void read_length_scale(Fields& fields, LengthScale& scale) {
-  const json* value = fields.value("length_scale");
-  if (!value) return;
-  if (value->is_number()) {
-    scale.kind = LengthScale::Kind::metres;
-    fields.number("length_scale", {0.0, 1e3, "m", true}, scale.metres);
-    return;
-  }
-  for (const auto& [name, kind] : length_scale_words)
-    if (*value == name) {
-      scale.kind = kind;
-      return;
-    }
-  fields.problems().add(fields.path("length_scale"), printed(*value), "half | full | a number of metres above 0");
-}
-
-void read_phase_field(Fields& top, Scene& scene) {
-  const json* value = top.value("phase_field");
-  if (!value) return;
-  Fields fields(*value, "phase_field", top.problems());
-  PhaseFieldSettings& settings = scene.phase_field;
-  read_cells(fields, settings);
-  read_length_scale(fields, settings.length_scale);
-  fields.number("residual_stiffness", {0.0, 0.1, ""}, settings.residual_stiffness);
-  fields.word("crack_seeding", seeding_words, settings.crack_seeding, {"history", "nodes"});
-  fields.only("integrator", "explicit", {"newmark"});
-  fields.number("cfl", {0.0, max_cfl, "", true}, settings.cfl);
-  fields.number("dt", {0.0, 1e3, "s", true}, settings.dt);
-  fields.only("quadrature", "gll", {"gauss"});
-  fields.only("split", "seed", {"none", "spectral", "volumetric_deviatoric", "star_convex"});
-  fields.word("plasticity", plasticity_words, settings.plasticity, {"j2"});
-  fields.only("precision", "double", {"float"});
-  if (fields.has("cfl") && fields.has("dt"))
-    top.problems().add(fields.path("dt"), "given with cfl", "one of the two", "remove phase_field.cfl to set the step in seconds");
-  fields.done();
 }
 
 // Another method's block may stand beside the chosen one; its keys must be the format's, its values are not this scene's.
@@ -189,32 +137,7 @@ void check_grid(const Scene& scene, ProblemList& problems) {
                  "a longer interval or a shorter horizon");
 }
 
-void check_step(const Scene& scene, ProblemList& problems) {
-  const double edge = step_edge(scene);
-  const double dt = scene.phase_field.dt.value_or(scene.phase_field.cfl * edge);
-  if (dt > max_cfl * edge)
-    problems.add("phase_field.dt", shortest(dt),
-                 fmt::format("at most {} s, which is {} h / sqrt((C_max + C55) / rho)", shortest(max_cfl * edge), max_cfl));
-  if (scene.horizon / dt > max_steps)
-    problems.add("time.horizon", shortest(scene.horizon), fmt::format("at most {} steps of {} s", shortest(max_steps), shortest(dt)));
-}
-
 }  // namespace
-
-double step_edge(const Scene& scene) {
-  double fastest = 0.0;
-  for (const Layer& layer : scene.layers) {
-    const Elasticity& c = layer.material.elasticity;
-    fastest = std::max(fastest, (std::max(c.C11, c.C33) + c.C55) / layer.material.density);
-  }
-  return std::min(scene.width / scene.phase_field.cells_x, scene.height / scene.phase_field.cells_z) / std::sqrt(fastest);
-}
-
-PlasticityModel effective_plasticity(const Scene& scene) {
-  const bool yields =
-      std::any_of(scene.layers.begin(), scene.layers.end(), [](const Layer& layer) { return layer.material.plasticity.has_value(); });
-  return yields ? scene.phase_field.plasticity : PlasticityModel::none;
-}
 
 Parsed<Scene> scene_from_json(const json& file) {
   ProblemList problems;
@@ -238,8 +161,9 @@ Parsed<Scene> scene_from_json(const json& file) {
 
   fill_times(scene);
   scene.phase_field.plasticity = effective_plasticity(scene);
+  if (scene.phase_field.plasticity != PlasticityModel::j2) scene.phase_field.plastic_drive = 0.0;
   check_grid(scene, problems);
-  check_step(scene, problems);
+  check_phase_field(scene, problems);
   if (!problems.empty()) return tl::unexpected(problems.take());
   return scene;
 }

@@ -33,17 +33,29 @@ void read_motion(Fields& fields, SideLoad& part) {
 // A prescribed motion and a traction on one part would contradict each other.
 void check_part(Fields& fields, const SideLoad& part) {
   const bool moves = fields.has("normal_velocity") || fields.has("tangential_velocity") || part.tangential == Tangential::fixed;
-  if (moves && fields.has("traction"))
-    fields.problems().add(fields.path("traction"), "given with a velocity or a fixed tangent", "either a motion or a traction",
-                          "split the side into parts with from and to");
-  if (!moves && !fields.has("traction") && !fields.has("tangential"))
-    fields.problems().add(fields.path("normal_velocity"), "(missing)", "one of normal_velocity, tangential_velocity, tangential, traction",
+  const bool pulls = fields.has("traction") || fields.has("pressure");
+  if (moves && pulls)
+    fields.problems().add(fields.path(fields.has("traction") ? "traction" : "pressure"), "given with a velocity or a fixed tangent",
+                          "either a motion or a traction", "split the side into parts with from and to");
+  if (!moves && !pulls && !fields.has("tangential"))
+    fields.problems().add(fields.path("normal_velocity"), "(missing)",
+                          "one of normal_velocity, tangential_velocity, tangential, traction, pressure",
                           "write \"free\" or \"fixed\" for a side without motion");
   if (!(part.from < part.to))
     fields.problems().add(fields.path("to"), shortest(part.to), fmt::format("above from = {} m", shortest(part.from)));
 }
 
-SideLoad read_part(const json& value, const std::string& path, double length, ProblemList& problems) {
+// Pressure p pushes inward: it is the traction -p n.
+void read_pressure(Fields& fields, Side side, SideLoad& part) {
+  double given = 0.0;
+  if (!fields.number("pressure", pressure, given)) return;
+  const double inward = side == Side::left || side == Side::bottom ? given : -given;
+  part.traction = side == Side::left || side == Side::right ? std::array{inward, 0.0} : std::array{0.0, inward};
+  if (fields.has("traction"))
+    fields.problems().add(fields.path("pressure"), "given with traction", "one of the two", "remove one of the two");
+}
+
+SideLoad read_part(const json& value, const std::string& path, Side side, double length, ProblemList& problems) {
   SideLoad part{.to = length, .normal_velocity = {}, .traction = {}};
   Fields fields(value, path, problems);
   fields.number("from", {0.0, length, "m", false, true}, part.from);
@@ -54,6 +66,7 @@ SideLoad read_part(const json& value, const std::string& path, double length, Pr
     std::array<double, 2> given{};
     if (read_numbers(*traction, fields.path("traction"), pressure, given, problems)) part.traction = given;
   }
+  read_pressure(fields, side, part);
   if (value.is_object()) check_part(fields, part);
   fields.done();
   return part;
@@ -78,7 +91,7 @@ json part_json(const SideLoad& part, bool whole_side) {
 
 double side_length(const Scene& scene, Side side) { return side == Side::left || side == Side::right ? scene.height : scene.width; }
 
-std::vector<SideLoad> read_side(const json& value, const std::string& path, double length, ProblemList& problems) {
+std::vector<SideLoad> read_side(const json& value, const std::string& path, Side side, double length, ProblemList& problems) {
   if (value.is_string()) {
     static constexpr std::array<std::string_view, 2> words{"free", "fixed"};
     const auto index = read_word(value, path, words, {}, problems);
@@ -86,7 +99,7 @@ std::vector<SideLoad> read_side(const json& value, const std::string& path, doub
     return {};
   }
   if (value.is_object()) {
-    const SideLoad part = read_part(value, path, length, problems);
+    const SideLoad part = read_part(value, path, side, length, problems);
     return idle(part) ? std::vector<SideLoad>{} : std::vector<SideLoad>{part};
   }
   if (!value.is_array() || value.size() > max_parts) {
@@ -94,7 +107,7 @@ std::vector<SideLoad> read_side(const json& value, const std::string& path, doub
     return {};
   }
   std::vector<SideLoad> parts;
-  for (std::size_t i = 0; i < value.size(); ++i) parts.push_back(read_part(value[i], key_path(path, i), length, problems));
+  for (std::size_t i = 0; i < value.size(); ++i) parts.push_back(read_part(value[i], key_path(path, i), side, length, problems));
   std::erase_if(parts, idle);
   std::stable_sort(parts.begin(), parts.end(), [](const SideLoad& a, const SideLoad& b) { return a.from < b.from; });
   for (std::size_t i = 1; i < parts.size(); ++i)

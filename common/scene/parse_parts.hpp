@@ -22,7 +22,7 @@ nlohmann::json material_json(const Material& material);
 nlohmann::json material_properties(const Material& material);
 
 // "free" | "fixed" | object | list of objects; parts sorted along the side, never overlapping.
-std::vector<SideLoad> read_side(const nlohmann::json& value, const std::string& path, double length, ProblemList& problems);
+std::vector<SideLoad> read_side(const nlohmann::json& value, const std::string& path, Side side, double length, ProblemList& problems);
 nlohmann::json side_json(const std::vector<SideLoad>& parts, double length);
 double side_length(const Scene& scene, Side side);
 
@@ -31,15 +31,33 @@ double step_edge(const Scene& scene);
 // What secant means where no layer yields is `none`; both spellings are one scene.
 PlasticityModel effective_plasticity(const Scene& scene);
 
+// The keys of the phase_field block, what they may not be together, and their canonical spelling (settings with no effect are left out).
+void read_phase_field(Fields& top, Scene& scene);
+void check_phase_field(const Scene& scene, ProblemList& problems);
+nlohmann::json phase_field_json(const Scene& scene);
+
 // Spellings of files; name_of() prints by them too.
 inline constexpr std::array<Word<Method>, 1> method_words{{{"phase_field", Method::phase_field}}};
 inline constexpr std::array<Word<CrackSet>, 2> crack_set_words{{{"orthogonal", CrackSet::orthogonal}, {"oblique", CrackSet::oblique}}};
 inline constexpr std::array<Word<Side>, 4> side_words{
     {{"left", Side::left}, {"right", Side::right}, {"bottom", Side::bottom}, {"top", Side::top}}};
 inline constexpr std::array<Word<Stop>, 2> stop_words{{{"failure", Stop::failure}, {"horizon", Stop::horizon}}};
-inline constexpr std::array<Word<CrackSeeding>, 1> seeding_words{{{"slot", CrackSeeding::slot}}};
-inline constexpr std::array<Word<PlasticityModel>, 2> plasticity_words{
-    {{"none", PlasticityModel::none}, {"secant", PlasticityModel::secant}}};
+inline constexpr std::array<Word<StepControl>, 2> step_control_words{{{"fixed", StepControl::fixed}, {"adaptive", StepControl::adaptive}}};
+inline constexpr std::array<Word<CrackSeeding>, 3> seeding_words{
+    {{"slot", CrackSeeding::slot}, {"nodes", CrackSeeding::nodes}, {"history", CrackSeeding::history}}};
+inline constexpr std::array<Word<SurfaceModel>, 2> surface_words{{{"at2", SurfaceModel::at2}, {"at1", SurfaceModel::at1}}};
+inline constexpr std::array<Word<Plane>, 2> plane_words{{{"strain", Plane::strain}, {"stress", Plane::stress}}};
+inline constexpr std::array<Word<Split>, 5> split_words{{{"seed", Split::seed},
+                                                         {"none", Split::none},
+                                                         {"spectral", Split::spectral},
+                                                         {"volumetric_deviatoric", Split::volumetric_deviatoric},
+                                                         {"star_convex", Split::star_convex}}};
+inline constexpr std::array<Word<PlasticityModel>, 3> plasticity_words{
+    {{"none", PlasticityModel::none}, {"secant", PlasticityModel::secant}, {"j2", PlasticityModel::j2}}};
+inline constexpr std::array<Word<Quadrature>, 2> quadrature_words{{{"gll", Quadrature::gll}, {"gauss", Quadrature::gauss}}};
+inline constexpr std::array<Word<Precision>, 2> precision_words{{{"double", Precision::double_}, {"float", Precision::float_}}};
+inline constexpr std::array<Word<Integrator>, 3> integrator_words{
+    {{"explicit", Integrator::explicit_central}, {"newmark", Integrator::newmark}, {"quasi_static", Integrator::quasi_static}}};
 inline constexpr std::array<Word<LengthScale::Kind>, 2> length_scale_words{
     {{"half", LengthScale::Kind::half}, {"full", LengthScale::Kind::full}}};
 

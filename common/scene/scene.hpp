@@ -55,8 +55,15 @@ struct Initial {
 };
 
 enum class Stop { failure, horizon };
-enum class CrackSeeding { slot };
-enum class PlasticityModel { none, secant };
+enum class StepControl { fixed, adaptive };  // adaptive: a run that ends SOLVER_NUMERIC begins again with half the step
+enum class CrackSeeding { slot, nodes, history };
+enum class PlasticityModel { none, secant, j2 };
+enum class SurfaceModel { at2, at1 };
+enum class Plane { strain, stress };
+enum class Split { seed, none, spectral, volumetric_deviatoric, star_convex };
+enum class Quadrature { gll, gauss };
+enum class Integrator { explicit_central, newmark, quasi_static };
+enum class Precision { double_, float_ };
 
 struct LengthScale {
   enum class Kind { half, full, metres } kind = Kind::half;
@@ -70,9 +77,22 @@ struct PhaseFieldSettings {
   LengthScale length_scale;
   double residual_stiffness = 1e-6;  // eta
   CrackSeeding crack_seeding = CrackSeeding::slot;
-  double cfl = 0.9;          // of h / sqrt((C_max + C55) / rho)
-  std::optional<double> dt;  // s, instead of cfl
+  SurfaceModel surface = SurfaceModel::at2;
+  Plane plane = Plane::strain;
+  Split split = Split::seed;
+  double star_convexity = 5.0;  // gamma*, where the split is star_convex
   PlasticityModel plasticity = PlasticityModel::secant;
+  double plastic_drive = 0.0;  // share of the plastic work in the damage drive, where plasticity is j2
+  Quadrature quadrature = Quadrature::gll;
+  Precision precision = Precision::double_;
+  Integrator integrator = Integrator::explicit_central;
+  double cfl = 0.9;          // of h / sqrt((C_max + C55) / rho)
+  std::optional<double> dt;  // s, instead of cfl; a quasi-static run has no other step
+  StepControl step_control = StepControl::fixed;
+  double newmark_beta = 0.25, newmark_gamma = 0.5;
+  // Newmark and quasi-static: displacement and damage in turns, until the largest change of psi in a pass is below the tolerance.
+  double staggered_tolerance = 1e-4;
+  int staggered_passes = 100;  // at most; 1 is the single pass
   bool operator==(const PhaseFieldSettings&) const = default;
 };
 

@@ -102,7 +102,8 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
   if (std::abs(hx - hz) > 0.01 * std::min(hx, hz))
     out.push_back(fmt::format("cells are {} by {}, not square", engineering(hx, "m"), engineering(hz, "m")));
   const double fraction = scene.phase_field.dt ? *scene.phase_field.dt / step_edge(scene) : scene.phase_field.cfl;
-  if (fraction > 0.95) out.push_back(fmt::format("the step is {:.3f} of the stability edge", fraction));
+  if (fraction > 0.95 && scene.phase_field.integrator == Integrator::explicit_central)
+    out.push_back(fmt::format("the step is {:.3f} of the stability edge", fraction));
   if (scene.frame_interval > scene.horizon)
     out.push_back("the frame interval is longer than the horizon: only the first and the failure state are stored");
   if (!loaded(scene)) out.push_back("nothing loads the body: it will be CENSORED at its horizon");

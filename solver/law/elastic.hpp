@@ -1,37 +1,50 @@
-// Orthotropic linear elasticity in plane strain, z vertical. Stress positive in tension, Pa; shear strain is gamma_xz = du_x/dz + du_z/dx.
+// Orthotropic linear elasticity in the plane, z vertical. Stress positive in tension, Pa; shear strain is gamma_xz = du_x/dz + du_z/dx.
+// Laws are templates on the number type: double or float.
 #pragma once
 
 #include "solver/law/pointwise.hpp"
 
 namespace fracfarm::law {
 
+template <class Real>
 struct Strain {
-  double xx;
-  double zz;
-  double xz;  // gamma, twice the tensor's component
+  Real xx;
+  Real zz;
+  Real xz;  // gamma, twice the tensor's component
 };
 
+template <class Real>
 struct Stress {
-  double xx;
-  double zz;
-  double xz;
+  Real xx;
+  Real zz;
+  Real xz;
 };
 
+template <class Real>
 struct Stiffness {
-  double C11;
-  double C13;
-  double C33;
-  double C55;
+  Real C11;
+  Real C13;
+  Real C33;
+  Real C55;
 };
 
 // sigma = C epsilon (seed paper, eq. 9 without the degradation).
-FRACFARM_POINTWISE Stress stress(const Stiffness& C, const Strain& e) {
+template <class Real>
+FRACFARM_POINTWISE Stress<Real> stress(const Stiffness<Real>& C, const Strain<Real>& e) {
   return {C.C11 * e.xx + C.C13 * e.zz, C.C13 * e.xx + C.C33 * e.zz, C.C55 * e.xz};
 }
 
 // 1/2 epsilon : C : epsilon, J/m^3, undegraded.
-FRACFARM_POINTWISE double strain_energy(const Stiffness& C, const Strain& e) {
-  return 0.5 * (C.C11 * e.xx * e.xx + 2.0 * C.C13 * e.xx * e.zz + C.C33 * e.zz * e.zz + C.C55 * e.xz * e.xz);
+template <class Real>
+FRACFARM_POINTWISE Real strain_energy(const Stiffness<Real>& C, const Strain<Real>& e) {
+  return Real(0.5) * (C.C11 * e.xx * e.xx + Real(2) * C.C13 * e.xx * e.zz + C.C33 * e.zz * e.zz + C.C55 * e.xz * e.xz);
+}
+
+// Plane stress of an isotropic material: lambda' = 2 lambda mu / (lambda + 2 mu), from sigma_yy = 0.
+template <class Real>
+FRACFARM_POINTWISE Stiffness<Real> plane_stress(const Stiffness<Real>& C) {
+  const Real lambda = Real(2) * C.C13 * C.C55 / (C.C13 + Real(2) * C.C55);
+  return {lambda + Real(2) * C.C55, lambda, lambda + Real(2) * C.C55, C.C55};
 }
 
 }  // namespace fracfarm::law

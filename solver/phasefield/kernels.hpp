@@ -12,8 +12,8 @@ namespace fracfarm::phasefield {
 
 // Constants of one row of elements.
 struct ElementRow {
-  law::Stiffness stiffness;
-  law::Secant secant;  // where plastic
+  law::Stiffness<double> stiffness;
+  law::Secant<double> secant;  // where plastic
   bool plastic;
   double surface;        // G_c / w_0, J/m^3
   double surface_slope;  // G_c w_0, J/m

@@ -94,7 +94,7 @@ void pin_cracks(Model& model, const Scene& scene) {
 
 }  // namespace
 
-double stable_dt(const law::Stiffness& C, double density, double hx, double hz) {
+double stable_dt(const law::Stiffness<double>& C, double density, double hx, double hz) {
   const double x = C.C11 / (hx * hx) + C.C55 / (hz * hz);
   const double z = C.C33 / (hz * hz) + C.C55 / (hx * hx);
   return std::sqrt(density / std::max(x, z));

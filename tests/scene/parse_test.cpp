@@ -10,14 +10,12 @@ using nlohmann::json;
 
 TEST_CASE("a small scene gets every default of SCENES.md") {
   const Scene scene = scene_of(good_scene());
-  CHECK(scene.phase_field == PhaseFieldSettings{.cells_x = 127,
-                                                .cells_z = 127,
-                                                .length_scale = {},
-                                                .residual_stiffness = 1e-6,
-                                                .crack_seeding = CrackSeeding::slot,
-                                                .cfl = 0.9,
-                                                .dt = {},
-                                                .plasticity = PlasticityModel::none});
+  PhaseFieldSettings defaults;  // of scene.hpp, but for the material: pbx does not yield
+  defaults.plasticity = PlasticityModel::none;
+  CHECK(scene.phase_field == defaults);
+  CHECK(scene.phase_field.cells_x == 127);
+  CHECK(scene.phase_field.residual_stiffness == 1e-6);
+  CHECK(scene.phase_field.cfl == 0.9);
   CHECK(scene.horizon == 1000e-6);
   CHECK(scene.frame_interval == 5e-6);
   CHECK(scene.stop == Stop::failure);

@@ -1,12 +1,12 @@
 // H = max(H, Phi+) at the corners of each element, the stored energy around each node, and the right side of the psi equation.
-#include "solver/law/seed_split.hpp"
+#include "solver/law/splits.hpp"
 #include "solver/phasefield/kernels/rows.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_ISA {
 namespace {
 
 // Largest q^2 of an element row.
-INLINE double largest_von_mises_squared(const View& v, const law::Secant& secant, const RowPair& r) {
+INLINE double largest_von_mises_squared(const View& v, const law::Secant<double>& secant, const RowPair& r) {
   double* q2 = scratch_row(v, 0);
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
@@ -26,10 +26,10 @@ INLINE void elastic_history_row(const View& v, const Stiffness& C, const RowPair
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
     const Corners e = corner_strains(r, i);
-    H0[i] = larger(law::positive_energy(C, e.sw), H0[i]);
-    H1[i] = larger(law::positive_energy(C, e.se), H1[i]);
-    H2[i] = larger(law::positive_energy(C, e.nw), H2[i]);
-    H3[i] = larger(law::positive_energy(C, e.ne), H3[i]);
+    H0[i] = larger(law::SeedSplit<double>{C}.drive(e.sw), H0[i]);
+    H1[i] = larger(law::SeedSplit<double>{C}.drive(e.se), H1[i]);
+    H2[i] = larger(law::SeedSplit<double>{C}.drive(e.nw), H2[i]);
+    H3[i] = larger(law::SeedSplit<double>{C}.drive(e.ne), H3[i]);
     W0[i] = law::strain_energy(C, e.sw);
     W1[i] = law::strain_energy(C, e.se);
     W2[i] = law::strain_energy(C, e.nw);
@@ -37,14 +37,14 @@ INLINE void elastic_history_row(const View& v, const Stiffness& C, const RowPair
   }
 }
 
-INLINE void secant_corner(const law::Secant& secant, const Strain& e, double& H, double& W, double& s) {
+INLINE void secant_corner(const law::Secant<double>& secant, const Strain& e, double& H, double& W, double& s) {
   const double q = __builtin_sqrt(law::von_mises_squared(secant, e));
   s = law::reduction(secant, q);
-  H = larger(law::positive_energy(law::reduced_stiffness(secant, s), e), H);
+  H = larger(law::SeedSplit<double>{law::reduced_stiffness(secant, s)}.drive(e), H);
   W = law::stored_energy(secant, e, q);
 }
 
-INLINE void secant_history_row(const View& v, const law::Secant& secant, const RowPair& r, double* const H[4], double* const W[4],
+INLINE void secant_history_row(const View& v, const law::Secant<double>& secant, const RowPair& r, double* const H[4], double* const W[4],
                                double* const S[4]) {
   double *H0 = H[0], *H1 = H[1], *H2 = H[2], *H3 = H[3], *W0 = W[0], *W1 = W[1], *W2 = W[2], *W3 = W[3];
   double *S0 = S[0], *S1 = S[1], *S2 = S[2], *S3 = S[3];

@@ -39,11 +39,11 @@ INLINE void elastic_force_row(const View& v, int j, const ForceRows& f, const St
   }
 }
 
-INLINE Stress secant_stress(const law::Secant& secant, double s, const Strain& e) {
+INLINE Stress secant_stress(const law::Secant<double>& secant, double s, const Strain& e) {
   return law::stress(law::reduced_stiffness(secant, s), e);
 }
 
-INLINE void secant_force_row(const View& v, int j, const ForceRows& f, const law::Secant& secant) {
+INLINE void secant_force_row(const View& v, int j, const ForceRows& f, const law::Secant<double>& secant) {
   const RowPair r = row_pair(v, j);
   const Index at = Index(j) * v.stride;
   const double *S0 = v.reduction[0] + at, *S1 = v.reduction[1] + at, *S2 = v.reduction[2] + at, *S3 = v.reduction[3] + at;

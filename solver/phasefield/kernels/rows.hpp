@@ -10,9 +10,9 @@
 
 namespace fracfarm::phasefield::FRACFARM_ISA {
 
-using law::Stiffness;
-using law::Strain;
-using law::Stress;
+using Stiffness = law::Stiffness<double>;
+using Strain = law::Strain<double>;
+using Stress = law::Stress<double>;
 using Index = long;
 
 struct Corners {
