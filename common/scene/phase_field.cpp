@@ -78,6 +78,9 @@ void check_companions(Fields& fields, const PhaseFieldSettings& settings) {
     if (fields.has(key) && !fits) fields.problems().add(fields.path(key), "given", std::string(limit), "remove the key");
   };
   const bool implicit = settings.integrator != Integrator::explicit_central;
+  if (!implicit && settings.cfl > max_cfl)
+    fields.problems().add(fields.path("cfl"), shortest(settings.cfl), "a number " + Range{0.0, max_cfl, "", true}.text(),
+                          "0.9; integrator newmark takes longer steps");
   needs("star_convexity", settings.split == Split::star_convex, "only with split star_convex");
   needs("plastic_drive", settings.plasticity == PlasticityModel::j2, "only with plasticity j2");
   needs("newmark_beta", settings.integrator == Integrator::newmark, "only with integrator newmark");
@@ -140,10 +143,9 @@ void check_step(const Scene& scene, ProblemList& problems) {
   const double edge = step_edge(scene);
   const double dt = settings.dt.value_or(settings.cfl * edge);
   if (settings.integrator == Integrator::explicit_central && !(dt <= max_cfl * edge))
-    problems.add(settings.dt ? "phase_field.dt" : "phase_field.cfl", shortest(settings.dt ? dt : settings.cfl),
-                 settings.dt ? fmt::format("at most {} s, which is {} h / sqrt((C_max + C55) / rho)", shortest(max_cfl * edge), max_cfl)
-                             : fmt::format("at most {}", max_cfl),
-                 "0.9; integrator newmark takes longer steps");
+    problems.add("phase_field.dt", shortest(dt),
+                 fmt::format("at most {} s, which is {} h / sqrt((C_max + C55) / rho)", shortest(max_cfl * edge), max_cfl),
+                 "integrator newmark takes longer steps");
   if (!(scene.horizon / dt <= max_steps))
     problems.add("time.horizon", shortest(scene.horizon), fmt::format("at most {} steps of {} s", shortest(max_steps), shortest(dt)));
 }

@@ -101,11 +101,39 @@ class AnyScene {
       settings.dt = draw_.uniform(0.1, 1.19) * step_edge(scene);
     else
       settings.cfl = draw_.uniform(0.1, 1.2);
-    settings.plasticity = coin() ? PlasticityModel::secant : PlasticityModel::none;
-    settings.plasticity = effective_plasticity(scene);
+    add_laws(scene);
+    add_scheme(settings, scene);
     scene.horizon = step_edge(scene) * draw_.uniform(1, 1e6);
     scene.frame_interval = scene.horizon / draw_.uniform(0.5, 5e3);
     scene.stop = coin() ? Stop::horizon : Stop::failure;
+  }
+
+  template <class E>
+  E any_of(std::initializer_list<E> values) {
+    return *(values.begin() + draw_.integer(0, static_cast<int>(values.size()) - 1));
+  }
+
+  // Laws that go together; the materials may be of any symmetry, so the split is one that suits all.
+  void add_laws(Scene& scene) {
+    PhaseFieldSettings& settings = scene.phase_field;
+    settings.split = any_of({Split::seed, Split::none});
+    settings.surface = any_of({SurfaceModel::at1, SurfaceModel::at2});
+    settings.crack_seeding = any_of({CrackSeeding::slot, CrackSeeding::nodes, CrackSeeding::history});
+    settings.plasticity = any_of({PlasticityModel::none, PlasticityModel::secant, PlasticityModel::j2});
+    settings.plasticity = effective_plasticity(scene);
+    if (settings.plasticity == PlasticityModel::j2) settings.plastic_drive = draw_.uniform(0, 1);
+  }
+
+  void add_scheme(PhaseFieldSettings& settings, const Scene& scene) {
+    settings.quadrature = any_of({Quadrature::gll, Quadrature::gauss});
+    settings.step_control = any_of({StepControl::fixed, StepControl::adaptive});
+    settings.integrator =
+        any_of({Integrator::explicit_central, Integrator::explicit_central, Integrator::newmark, Integrator::quasi_static});
+    if (settings.integrator == Integrator::newmark)
+      settings.newmark_beta = draw_.uniform(0.1, 1), settings.newmark_gamma = draw_.uniform(0.5, 1);
+    if (settings.integrator == Integrator::quasi_static) settings.dt = step_edge(scene), settings.cfl = PhaseFieldSettings{}.cfl;
+    if (settings.integrator != Integrator::explicit_central)
+      settings.staggered_tolerance = log_uniform(1e-12, 1), settings.staggered_passes = draw_.integer(1, 1000);
   }
 
   RandomStream draw_;
@@ -178,8 +206,8 @@ TEST_CASE("the canonical text of a small scene is these bytes") {
       R"({"cracks":[[0.05,0.1,0.09,0.1]],"domain":{"height":0.2,"width":0.25},"initial":{"strain":[0,0,0],"velocity_gradient":[0,0,0,0]},)"
       R"("loads":{"bottom":{"normal_velocity":1,"ramp":0,"tangential":"free"},"left":"free","right":"free",)"
       R"("top":{"normal_velocity":1,"ramp":0,"tangential":"free"}},"material":"pbx","method":"phase_field",)"
-      R"("phase_field":{"cells":[127,127],"cfl":0.9,"crack_seeding":"slot","integrator":"explicit","length_scale":"half","plasticity":"none",)"
-      R"("precision":"double","quadrature":"gll","residual_stiffness":1e-06,"split":"seed"},"schema":"fracfarm.scene/1",)"
+      R"("phase_field":{"cells":[127,127],"cfl":0.9,"crack_seeding":"slot","integrator":"explicit","length_scale":"half","plane":"strain",)"
+      R"("plasticity":"none","precision":"double","quadrature":"gll","residual_stiffness":1e-06,"split":"seed","step":"fixed","surface":"at2"},"schema":"fracfarm.scene/1",)"
       R"("time":{"frame_interval":5e-06,"horizon":0.001,"stop":"failure"}})");
 }
 

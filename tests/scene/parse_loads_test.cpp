@@ -30,6 +30,15 @@ TEST_CASE("a side's object says normal, tangential, ramp and where") {
   CHECK(top_of({{"traction", {0, 1e6}}}).at(0).traction == std::array{0.0, 1e6});
 }
 
+TEST_CASE("pressure pushes inward on every side, and goes with neither traction nor motion") {
+  CHECK(top_of({{"pressure", 2e6}}).at(0).traction == std::array{0.0, -2e6});
+  CHECK(scene_of(with("/loads/left", {{"pressure", 2e6}})).on(Side::left).at(0).traction == std::array{2e6, 0.0});
+  CHECK(scene_of(with("/loads/right", {{"pressure", 2e6}})).on(Side::right).at(0).traction == std::array{-2e6, 0.0});
+  CHECK(scene_of(with("/loads/bottom", {{"pressure", -2e6}})).on(Side::bottom).at(0).traction == std::array{0.0, -2e6});
+  problem_at(with("/loads/top", {{"pressure", 1.0}, {"traction", {0, 1}}}), "loads.top.pressure");
+  problem_at(with("/loads/top", {{"pressure", 1.0}, {"normal_velocity", 1.0}}), "loads.top.pressure");
+}
+
 TEST_CASE("left and right are as long as the domain is high") {
   CHECK(scene_of(with("/loads/left", "fixed")).on(Side::left).at(0).to == 0.2);
   problem_at(with("/loads/left", part(0, 0.25)), "loads.left.to");
