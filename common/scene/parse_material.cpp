@@ -12,7 +12,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t max_layers = 1000;
-constexpr Range stiffness{0.0, 1e15, "Pa", true};
+// No matter is lighter, softer or weaker; numbers near the smallest double would make steps that are not numbers.
+constexpr Range stiffness{1.0, 1e15, "Pa"};
 
 bool any(const Fields& fields, std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys)
@@ -77,9 +78,9 @@ Material read_object(const json& value, const std::string& path, bool width_need
   fields.require({"density", "Gc"});
   if (width_needed && !fields.has("characteristic_width"))
     problems.add(fields.path("characteristic_width"), "(missing)", "required key while phase_field.length_scale is 'half' or 'full'");
-  fields.number("density", {0.0, 1e6, "kg/m^3", true}, material.density);
-  fields.number("Gc", {0.0, 1e12, "J/m^2", true}, material.Gc);
-  fields.number("characteristic_width", {0.0, 1e3, "m", true}, material.characteristic_width);
+  fields.number("density", {1e-3, 1e6, "kg/m^3"}, material.density);
+  fields.number("Gc", {1e-9, 1e12, "J/m^2"}, material.Gc);
+  fields.number("characteristic_width", {1e-9, 1e3, "m"}, material.characteristic_width);
   read_elasticity(fields, material);
   read_plasticity(fields, material);
   read_cohesion(fields, material);

@@ -35,7 +35,7 @@ void read_length_scale(Fields& fields, LengthScale& scale) {
   if (!value) return;
   if (value->is_number()) {
     scale.kind = LengthScale::Kind::metres;
-    fields.number("length_scale", {0.0, 1e3, "m", true}, scale.metres);
+    fields.number("length_scale", {1e-9, 1e3, "m"}, scale.metres);
     return;
   }
   for (const auto& [name, kind] : length_scale_words)
@@ -135,7 +135,6 @@ void check_built(const Scene& scene, ProblemList& problems) {
   refuse(settings.quadrature != Quadrature::gll, "quadrature");
   refuse(settings.precision != Precision::double_, "precision");
   refuse(settings.integrator != Integrator::explicit_central, "integrator");
-  refuse(settings.step_control != StepControl::fixed, "step");
 }
 
 void check_step(const Scene& scene, ProblemList& problems) {

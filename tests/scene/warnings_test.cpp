@@ -51,6 +51,29 @@ TEST_CASE("a step near the edge is told, however it was given") {
   CHECK(warning(scene).find("of the stability edge") != std::string::npos);
 }
 
+TEST_CASE("an implicit run is told of what makes it inaccurate or unstable") {
+  json scene = quiet();
+  scene["phase_field"] = {{"cells", scene["phase_field"]["cells"]}, {"integrator", "newmark"}, {"cfl", 2.0}};
+  CHECK(scene_warnings(scene_of(scene)).empty());
+  scene["phase_field"]["staggered_passes"] = 1;
+  CHECK(warning(scene).find("a single staggered pass") == 0);
+  scene["phase_field"].erase("staggered_passes");
+  scene["phase_field"]["cfl"] = 8.0;
+  CHECK(warning(scene).find("smeared") != std::string::npos);
+  scene["phase_field"]["cfl"] = 2.0;
+  scene["phase_field"]["newmark_beta"] = 0.2;
+  CHECK(warning(scene).find("stable only for short steps") != std::string::npos);
+}
+
+TEST_CASE("a row of nodes as a crack is told under corner quadrature only") {
+  json scene = quiet();
+  scene["cracks"] = {{0.05, 0.1, 0.09, 0.1}};
+  scene["phase_field"]["crack_seeding"] = "nodes";
+  CHECK(warning(scene).find("do not cut") != std::string::npos);
+  scene["phase_field"]["quadrature"] = "gauss";
+  CHECK(scene_warnings(scene_of(scene)).empty());
+}
+
 TEST_CASE("a scene that nothing loads is told") {
   json scene = quiet();
   scene["loads"] = {{"top", "fixed"}};
