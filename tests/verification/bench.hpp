@@ -34,6 +34,14 @@ struct Bench {
         state.ux[at(i, j)] = x, state.uz[at(i, j)] = z;
       }
   }
+  template <class Velocity>  // (x, z) -> {vx, vz}, m/s
+  void set_velocity(Velocity v) {
+    for (int j = 0; j < model.grid.rows; ++j)
+      for (int i = 0; i < model.grid.columns; ++i) {
+        const auto [x, z] = v(i * model.grid.hx, j * model.grid.hz);
+        state.vx[at(i, j)] = x, state.vz[at(i, j)] = z;
+      }
+  }
   // History, damage, degradation and force of the displacements as they are.
   phasefield::StressSum respond() {
     kernels.update_history(view());
