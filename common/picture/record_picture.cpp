@@ -142,10 +142,4 @@ Canvas draw_record(const Record& record) {
   return page;
 }
 
-Canvas draw_thumbnail(const Record& record, int width) {
-  const Field field{record.phase_field.psi_failure, static_cast<int>(record.phase_field.x.size()),
-                    static_cast<int>(record.phase_field.z.size())};
-  return draw_field(field, width, proportionate(record, width));
-}
-
 }  // namespace fracfarm::picture

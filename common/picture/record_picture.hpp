@@ -9,7 +9,4 @@ namespace fracfarm::picture {
 // Initial pattern, a few frames, the field at failure, stress and energy over time, and a title that says what it is.
 Canvas draw_record(const Record& record);
 
-// The field at failure alone, `width` pixels wide, in the sample's proportions.
-Canvas draw_thumbnail(const Record& record, int width = 160);
-
 }  // namespace fracfarm::picture
