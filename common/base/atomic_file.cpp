@@ -42,6 +42,22 @@ bool write_all(int fd, std::string_view bytes) {
   return true;
 }
 
+fs::path part_of(const fs::path& path) { return path.string() + ".part"; }
+
+Result<void> write_new(const fs::path& path, std::string_view bytes, unsigned mode, bool sync) {
+  Descriptor fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode));
+  if (fd.get() < 0) return system_error("create", path);
+  if (!write_all(fd.get(), bytes)) return system_error("write", path);
+  if (sync && ::fsync(fd.get()) != 0) return system_error("sync", path);
+  if (!fd.close()) return system_error("close", path);
+  return {};
+}
+
+Result<void> rename_file(const fs::path& from, const fs::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) return system_error("rename to", to);
+  return {};
+}
+
 Result<void> sync_path(const fs::path& path, int flags) {
   const Descriptor fd(::open(path.c_str(), flags | O_CLOEXEC));
   if (fd.get() < 0) return system_error("open", path);
@@ -52,13 +68,15 @@ Result<void> sync_path(const fs::path& path, int flags) {
 }  // namespace
 
 Result<void> write_atomically(const fs::path& path, std::string_view bytes, unsigned mode) {
-  const fs::path part = path.string() + ".part";
-  Descriptor fd(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode));
-  if (fd.get() < 0) return system_error("create", part);
-  if (!write_all(fd.get(), bytes)) return system_error("write", part);
-  if (::fsync(fd.get()) != 0) return system_error("sync", part);
-  if (!fd.close()) return system_error("close", part);
+  const fs::path part = part_of(path);
+  if (auto written = write_new(part, bytes, mode, true); !written) return written;
   return commit_file(part, path);
+}
+
+Result<void> write_unsynced(const fs::path& path, std::string_view bytes, unsigned mode) {
+  const fs::path part = part_of(path);
+  if (auto written = write_new(part, bytes, mode, false); !written) return written;
+  return rename_file(part, path);
 }
 
 Result<void> sync_file(const fs::path& path) { return sync_path(path, O_RDONLY); }
@@ -66,7 +84,7 @@ Result<void> sync_file(const fs::path& path) { return sync_path(path, O_RDONLY);
 Result<void> sync_folder(const fs::path& folder) { return sync_path(folder.empty() ? fs::path(".") : folder, O_RDONLY | O_DIRECTORY); }
 
 Result<void> commit_file(const fs::path& part, const fs::path& path) {
-  if (::rename(part.c_str(), path.c_str()) != 0) return system_error("rename to", path);
+  if (auto renamed = rename_file(part, path); !renamed) return renamed;
   return sync_folder(path.parent_path());
 }
 
@@ -87,6 +105,11 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t max_bytes) {
       return fail(Fault::bad_request, path.string() + " is larger than the limit of " + std::to_string(max_bytes) + " bytes");
     bytes.append(buffer, static_cast<std::size_t>(got));
   }
+}
+
+void drop_cached(const fs::path& path) {
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (fd.get() >= 0) (void)::posix_fadvise(fd.get(), 0, 0, POSIX_FADV_DONTNEED);
 }
 
 }  // namespace fracfarm

@@ -19,6 +19,16 @@ TEST_CASE("an atomic write leaves the new bytes, the mode asked for and no part 
   fs::remove(path);
 }
 
+TEST_CASE("a write without a sync leaves the new bytes and no part file too") {
+  const fs::path path = fs::temp_directory_path() / "fracfarm_unsynced_test";
+  REQUIRE(write_unsynced(path, "one"));
+  REQUIRE(write_unsynced(path, "two"));
+  CHECK(read_file(path, 100).value() == "two");
+  CHECK_FALSE(fs::exists(path.string() + ".part"));
+  CHECK(write_unsynced("/nonexistent-folder/file", "x").error().fault == Fault::node_lost);
+  fs::remove(path);
+}
+
 TEST_CASE("a write into a folder that does not exist fails in words and leaves nothing") {
   const auto wrote = write_atomically("/nonexistent-folder/file", "x");
   REQUIRE_FALSE(wrote);
