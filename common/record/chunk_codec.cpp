@@ -1,47 +1,96 @@
 #include "common/record/chunk_codec.hpp"
 
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
 
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 namespace fracfarm {
 namespace {
 
-using Compressor = std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)>;
 using Decompressor = std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>;
 
 constexpr std::size_t checksum_size = 4;
+constexpr std::size_t block = 1024;  // elements that are shuffled while they lie in the nearest cache
 
-// Byte k of every element, then byte k+1: H5Zshuffle. Word is the element; one pass over whole words is thrice as fast as one over each
-// byte.
+// Byte k of every element, then byte k + 1: H5Zshuffle. Word is the element.
 template <class Word>
 void shuffle(std::string_view raw, char* out) {
   const std::size_t count = raw.size() / sizeof(Word);
-  for (std::size_t i = 0; i < count; ++i) {
-    Word word;
-    std::memcpy(&word, raw.data() + i * sizeof word, sizeof word);
-    for (std::size_t k = 0; k < sizeof word; ++k) out[k * count + i] = static_cast<char>(word >> (8 * k) & 0xff);
+  Word words[block];
+  for (std::size_t first = 0; first < count; first += block) {
+    const std::size_t many = std::min(block, count - first);
+    std::memcpy(words, raw.data() + first * sizeof(Word), many * sizeof(Word));
+    for (std::size_t k = 0; k < sizeof(Word); ++k)
+      for (std::size_t i = 0; i < many; ++i) out[k * count + first + i] = static_cast<char>(words[i] >> (8 * k) & 0xff);
   }
 }
 
 template <class Word>
-void unshuffle(std::string_view shuffled, char* out) {
-  const std::size_t count = shuffled.size() / sizeof(Word);
-  for (std::size_t i = 0; i < count; ++i) {
-    Word word = 0;
-    for (std::size_t k = 0; k < sizeof word; ++k) word |= static_cast<Word>(static_cast<unsigned char>(shuffled[k * count + i])) << (8 * k);
-    std::memcpy(out + i * sizeof word, &word, sizeof word);
+void unshuffle(const char* shuffled, std::span<char> raw) {
+  const std::size_t count = raw.size() / sizeof(Word);
+  Word words[block];
+  for (std::size_t first = 0; first < count; first += block) {
+    const std::size_t many = std::min(block, count - first);
+    const char* from = shuffled + first;
+    for (std::size_t i = 0; i < many; ++i) {
+      Word word = 0;
+      for (std::size_t k = 0; k < sizeof(Word); ++k) word |= static_cast<Word>(static_cast<unsigned char>(from[k * count + i])) << (8 * k);
+      words[i] = word;
+    }
+    std::memcpy(raw.data() + first * sizeof(Word), words, many * sizeof(Word));
   }
 }
 
-libdeflate_compressor* compressor(int level) {
-  thread_local Compressor kept{nullptr, &libdeflate_free_compressor};
-  thread_local int kept_level = 0;
-  if (!kept || kept_level != level) kept.reset(libdeflate_alloc_compressor(kept_level = level));
-  return kept.get();
+// Memory of this thread that is kept from chunk to chunk: a chunk has a quarter of a megabyte.
+class Kept {
+ public:
+  char* at_least(std::size_t size) {
+    if (bytes_.size() < size) bytes_.resize(size);
+    return bytes_.data();
+  }
+
+ private:
+  std::vector<char> bytes_;
+};
+thread_local Kept kept_shuffled, kept_stored, kept_level;
+
+// A zlib stream of at most 2 bytes a byte: no Huffman code of deflate is longer than 15 bits, and few blocks have a header.
+std::size_t zlib_bound(std::size_t size) { return 2 * size + 4096; }
+
+// ISA-L 2.30 returns with the upper halves of the vector registers in use, which makes every later SSE instruction of the thread wait: the
+// rest of a record then takes three times as long.
+#ifdef __x86_64__
+[[gnu::target("avx")]] void clear_upper_halves() { _mm256_zeroupper(); }
+bool has_upper_halves() { return __builtin_cpu_supports("avx"); }
+#else
+void clear_upper_halves() {}
+bool has_upper_halves() { return false; }
+#endif
+
+std::size_t deflate_to(std::string_view input, char* output, std::size_t room) {
+  isal_zstream stream;
+  isal_deflate_stateless_init(&stream);
+  stream.level = deflate_level;
+  stream.level_buf = reinterpret_cast<std::uint8_t*>(kept_level.at_least(ISAL_DEF_LVL2_DEFAULT));
+  stream.level_buf_size = ISAL_DEF_LVL2_DEFAULT;
+  stream.gzip_flag = IGZIP_ZLIB;
+  stream.end_of_stream = 1;
+  stream.next_in = reinterpret_cast<std::uint8_t*>(const_cast<char*>(input.data()));
+  stream.avail_in = static_cast<std::uint32_t>(input.size());
+  stream.next_out = reinterpret_cast<std::uint8_t*>(output);
+  stream.avail_out = static_cast<std::uint32_t>(room);
+  [[maybe_unused]] const int status = isal_deflate_stateless(&stream);
+  if (has_upper_halves()) clear_upper_halves();
+  assert(status == COMP_OK);
+  return stream.total_out;
 }
 
 libdeflate_decompressor* decompressor() {
@@ -60,9 +109,9 @@ std::uint32_t fletcher32(std::string_view bytes) {
   std::uint32_t sum1 = 0, sum2 = 0;
   const auto fold = [](std::uint32_t sum) { return (sum & 0xffffu) + (sum >> 16); };
   for (std::size_t words = bytes.size() / 2; words;) {
-    std::size_t block = std::min<std::size_t>(words, 360);  // as many as cannot overflow
-    words -= block;
-    for (; block; --block, data += 2) sum2 += sum1 += static_cast<std::uint32_t>(data[0] << 8 | data[1]);
+    std::size_t many = std::min<std::size_t>(words, 360);  // as many as cannot overflow
+    words -= many;
+    for (; many; --many, data += 2) sum2 += sum1 += static_cast<std::uint32_t>(data[0] << 8 | data[1]);
     sum1 = fold(sum1);
     sum2 = fold(sum2);
   }
@@ -74,33 +123,33 @@ std::uint32_t fletcher32(std::string_view bytes) {
   return fold(sum2) << 16 | fold(sum1);
 }
 
-std::string encode_chunk(std::string_view raw, std::size_t element_size, int level) {
+std::string_view encode_chunk(std::string_view raw, std::size_t element_size) {
   assert(element_size == 1 || element_size == 4 || element_size == 8);
-  std::string shuffled(element_size > 1 ? raw.size() : 0, '\0');
-  if (element_size == 4) shuffle<std::uint32_t>(raw, shuffled.data());
-  if (element_size == 8) shuffle<std::uint64_t>(raw, shuffled.data());
-  const std::string_view input = element_size > 1 ? std::string_view(shuffled) : raw;
-  std::string stored(libdeflate_zlib_compress_bound(compressor(level), input.size()) + checksum_size, '\0');
-  const std::size_t packed =
-      libdeflate_zlib_compress(compressor(level), input.data(), input.size(), stored.data(), stored.size() - checksum_size);
-  put_little_endian(fletcher32({stored.data(), packed}), stored.data() + packed);
-  stored.resize(packed + checksum_size);
-  return stored;
+  std::string_view input = raw;
+  if (element_size > 1) {
+    char* shuffled = kept_shuffled.at_least(raw.size());
+    if (element_size == 4) shuffle<std::uint32_t>(raw, shuffled);
+    if (element_size == 8) shuffle<std::uint64_t>(raw, shuffled);
+    input = {shuffled, raw.size()};
+  }
+  char* stored = kept_stored.at_least(zlib_bound(input.size()) + checksum_size);
+  const std::size_t packed = deflate_to(input, stored, zlib_bound(input.size()));
+  put_little_endian(fletcher32({stored, packed}), stored + packed);
+  return {stored, packed + checksum_size};
 }
 
-std::string_view decode_chunk(std::string_view stored, std::size_t element_size, std::string& raw) {
+std::string_view decode_chunk(std::string_view stored, std::size_t element_size, std::span<char> raw) {
   if (stored.size() < checksum_size) return "too short for a checksum";
   const std::string_view packed = stored.substr(0, stored.size() - checksum_size);
   char checksum[checksum_size];
   put_little_endian(fletcher32(packed), checksum);
   if (stored.substr(packed.size()) != std::string_view(checksum, checksum_size)) return "the fletcher32 checksum differs";
-  std::string shuffled(element_size > 1 ? raw.size() : 0, '\0');
-  std::string& output = element_size > 1 ? shuffled : raw;
+  char* output = element_size > 1 ? kept_shuffled.at_least(raw.size()) : raw.data();
   // With no place for the actual size, libdeflate demands exactly the size that is expected.
-  if (libdeflate_zlib_decompress(decompressor(), packed.data(), packed.size(), output.data(), output.size(), nullptr) != LIBDEFLATE_SUCCESS)
+  if (libdeflate_zlib_decompress(decompressor(), packed.data(), packed.size(), output, raw.size(), nullptr) != LIBDEFLATE_SUCCESS)
     return "does not inflate to the size of a chunk";
-  if (element_size == 4) unshuffle<std::uint32_t>(shuffled, raw.data());
-  if (element_size == 8) unshuffle<std::uint64_t>(shuffled, raw.data());
+  if (element_size == 4) unshuffle<std::uint32_t>(output, raw);
+  if (element_size == 8) unshuffle<std::uint64_t>(output, raw);
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/base/text.hpp"
+#include "common/record/damage_sweeps.hpp"
 #include "common/record/rounding.hpp"
 #include "common/scene/parse.hpp"
 
@@ -17,12 +18,13 @@ namespace fracfarm {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double psi_spacing = 1.0 / (2 << psi_mantissa_bits);  // of stored values just below 1
+constexpr double psi_spacing = 1.0 / (1 << psi_fraction_bits);  // of stored values
 
 struct Context {
   const Record& record;
   const PhaseFieldFrames& field;
   const std::optional<Scene>& scene;  // nothing where the text is not a scene
+  bool damage_in_range;               // every damage field in [0, 1]: most rules about it need no second look
 };
 
 struct Rule {
@@ -32,34 +34,30 @@ struct Rule {
   double (*value)(const Context&);
 };
 
-double count_not_finite(const Context& c) {
+bool all_in_unit_range(const PhaseFieldFrames& field) {
+  return in_unit_range(field.psi_initial) && in_unit_range(field.psi_failure) &&
+         std::all_of(field.psi.begin(), field.psi.end(), [](const auto& frame) { return in_unit_range(frame); });
+}
+
+double not_finite(const Context& c) {
   std::size_t count = 0;
   const auto look = [&](const auto& values) {
     for (auto value : values) count += !std::isfinite(value);
   };
-  for (const auto& frame : c.field.psi) look(frame);
-  look(c.field.psi_initial), look(c.field.psi_failure), look(c.field.time), look(c.field.x), look(c.field.z);
+  if (!c.damage_in_range) {
+    for (const auto& frame : c.field.psi) count += count_not_finite(frame);
+    count += count_not_finite(c.field.psi_initial) + count_not_finite(c.field.psi_failure);
+  }
+  look(c.field.time), look(c.field.x), look(c.field.z);
   for (const Column& column : c.record.series.columns) look(column.values);
   look(std::array{c.record.peak_stress, c.record.energy_residual, c.record.judgement.confidence});
   return static_cast<double>(count);
 }
 
 double outside_unit_range(const Context& c) {
-  float worst = 0.0f;
-  const auto look = [&](const std::vector<float>& field) {
-    for (float psi : field)
-      if (!(psi >= 0.0f && psi <= 1.0f)) worst = std::max({worst, -psi, psi - 1.0f});
-  };
-  for (const auto& frame : c.field.psi) look(frame);
-  look(c.field.psi_initial), look(c.field.psi_failure);
-  return worst;
-}
-
-// Largest drop of damage from `before` to `after`.
-float healing(const std::vector<float>& before, const std::vector<float>& after) {
-  float worst = 0.0f;
-  for (std::size_t i = 0; i < before.size(); ++i)
-    if (before[i] > after[i]) worst = std::max(worst, before[i] - after[i]);
+  if (c.damage_in_range) return 0.0;
+  float worst = std::max(excursion(c.field.psi_initial), excursion(c.field.psi_failure));
+  for (const auto& frame : c.field.psi) worst = std::max(worst, excursion(frame));
   return worst;
 }
 
@@ -67,11 +65,12 @@ float healing(const std::vector<float>& before, const std::vector<float>& after)
 double healed(const Context& c) {
   float worst = 0.0f;
   const std::vector<float>* before = &c.field.psi_initial;
-  for (const auto& frame : c.field.psi) worst = std::max(worst, healing(*std::exchange(before, &frame), frame));
+  for (const auto& frame : c.field.psi) worst = std::max(worst, largest_drop(*std::exchange(before, &frame), frame));
   const double at = c.record.judgement.time_to_failure.value_or(infinity);
   const auto next = std::upper_bound(c.field.time.begin(), c.field.time.end(), at) - c.field.time.begin();
-  if (next > 0) worst = std::max(worst, healing(c.field.psi[static_cast<std::size_t>(next - 1)], c.field.psi_failure));
-  if (next < std::ssize(c.field.psi)) worst = std::max(worst, healing(c.field.psi_failure, c.field.psi[static_cast<std::size_t>(next)]));
+  if (next > 0) worst = std::max(worst, largest_drop(c.field.psi[static_cast<std::size_t>(next - 1)], c.field.psi_failure));
+  if (next < std::ssize(c.field.psi))
+    worst = std::max(worst, largest_drop(c.field.psi_failure, c.field.psi[static_cast<std::size_t>(next)]));
   return worst;
 }
 
@@ -247,7 +246,7 @@ double judgement_differences(const Context& c) {
 }
 
 constexpr auto rules = std::to_array<Rule>({
-    {"finite", "numbers that are not finite", 0.0, count_not_finite},
+    {"finite", "numbers that are not finite", 0.0, not_finite},
     {"damage_range", "largest excursion of damage from 0...1", 0.0, outside_unit_range},
     {"damage_growth", "largest drop of damage between instants", 4.0 * psi_spacing, healed},
     {"mask_held", "largest 1 - psi on a node of the initial cracks", 0.0, mask_below_one},
@@ -303,7 +302,7 @@ std::string broken_shape(const Record& record) {
 std::vector<ContentCheck> check_content(const Record& record) {
   std::optional<Scene> scene;
   if (Parsed<Scene> parsed = parse_scene(record.canonical_scene)) scene = std::move(*parsed);
-  const Context context{record, record.phase_field, scene};
+  const Context context{record, record.phase_field, scene, all_in_unit_range(record.phase_field)};
   std::vector<ContentCheck> checks;
   for (const Rule& rule : rules) {
     double value = rule.value(context);

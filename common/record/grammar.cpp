@@ -37,8 +37,10 @@ Array take_psi(const View& view) {
 
 void give_psi(Record& r, const Array& array) {
   const std::size_t nodes = array.dims[1] * array.dims[2];
-  r.phase_field.psi.assign(array.dims[0], std::vector<float>(nodes));
-  for (std::size_t t = 0; t < array.dims[0]; ++t) std::memcpy(r.phase_field.psi[t].data(), array.bytes.data() + t * nodes * 4, nodes * 4);
+  if (nodes == 0) return;  // any number of frames of nothing would fit a small file
+  r.phase_field.psi.reserve(array.dims[0]);
+  for (std::size_t t = 0; t < array.dims[0]; ++t)
+    std::memcpy(r.phase_field.psi.emplace_back(nodes).data(), array.bytes.data() + t * nodes * 4, nodes * 4);
 }
 
 Array take_segments(const View& view) {
@@ -119,10 +121,10 @@ std::span<const DatasetRow> datasets() {
       {{"/x", Type::f8, {"/x"}, "m", "distance of the node from the left side", "X"},
        [](const View& v) { return array_of(v.record.phase_field.x, {v.record.phase_field.x.size()}); },
        [](Record& r, const Array& a) { r.phase_field.x = doubles_of(a); }},
-      {{"/psi", Type::f4, {t_dim, z_dim, x_dim}, "1", "phase field: 0 intact, 1 broken; row 0 at the bottom", "", psi_mantissa_bits},
+      {{"/psi", Type::f4, {t_dim, z_dim, x_dim}, "1", "phase field: 0 intact, 1 broken; row 0 at the bottom", "", psi_fraction_bits},
        take_psi,
        give_psi},
-      {{"/psi_initial", Type::f4, {z_dim, x_dim}, "1", "phase field at the start", "", psi_mantissa_bits},
+      {{"/psi_initial", Type::f4, {z_dim, x_dim}, "1", "phase field at the start", "", psi_fraction_bits},
        [](const View& v) {
          return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_initial)};
        },
@@ -133,7 +135,7 @@ std::span<const DatasetRow> datasets() {
         "1",
         "phase field at time_to_failure, or the last state where there is none",
         "",
-        psi_mantissa_bits},
+        psi_fraction_bits},
        [](const View& v) {
          return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_failure)};
        },

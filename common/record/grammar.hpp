@@ -14,7 +14,8 @@
 
 namespace fracfarm::grammar {
 
-inline constexpr std::string_view schema = "fracfarm.record/1";
+inline constexpr std::string_view schema = "fracfarm.record/2";
+inline constexpr std::string_view schema_1 = "fracfarm.record/1";  // still read; it kept 12 mantissa bits of damage
 inline constexpr std::string_view conventions = "CF-1.10";
 inline constexpr std::string_view licence = "CC-BY-4.0";
 inline constexpr std::size_t total_limit = std::size_t{1} << 30;  // bytes of all datasets together, decoded
@@ -45,10 +46,11 @@ struct DatasetSpec {
   std::string units;
   std::string long_name;
   std::string axis{};     // T, Z, Y, X of a coordinate, or empty
-  int mantissa_bits = 0;  // 0: all
+  int fraction_bits = 0;  // 0: all
 
   bool is_scale() const { return dims.size() == 1 && dims.front() == path; }
-  std::vector<std::pair<std::string, std::string>> attributes() const;  // name and text, beside those of dimension scales
+  // Name and text, beside those of dimension scales, in a file of that schema.
+  std::vector<std::pair<std::string, std::string>> attributes(std::string_view file_schema = schema) const;
 };
 
 // What the datasets are taken from: a record and the outcome of its rules.

@@ -48,7 +48,8 @@ Value solver_of(const Record& r) {
 std::span<const AttributeRow> attributes() {
   static const std::vector<AttributeRow> table{
       {"/", "Conventions", [](const Record&) -> Value { return std::string(conventions); }, nullptr},
-      {"/", "fracfarm_schema", [](const Record&) -> Value { return std::string(schema); }, nullptr},
+      {"/", "fracfarm_schema", [](const Record&) -> Value { return std::string(schema); },
+       [](Record&, const Value& v) { return std::get<std::string>(v) == schema || std::get<std::string>(v) == schema_1; }},
       {"/", "solver", solver_of, nullptr},
       {"/", "method", [](const Record& r) -> Value { return r.method; }, [](Record& r, const Value& v) { return give_text(r.method, v); }},
       {"/", "material", [](const Record& r) -> Value { return r.material; },
@@ -104,14 +105,15 @@ DatasetSpec series_spec(std::string_view name, std::string_view unit) {
 
 Array series_array(const Column& column) { return array_of(column.values, {column.values.size()}); }
 
-std::vector<std::pair<std::string, std::string>> DatasetSpec::attributes() const {
+std::vector<std::pair<std::string, std::string>> DatasetSpec::attributes(std::string_view file_schema) const {
   std::vector<std::pair<std::string, std::string>> list;
   if (!units.empty()) list.emplace_back("units", units);
   list.emplace_back("long_name", long_name);
   if (!axis.empty()) list.emplace_back("axis", axis);
-  if (mantissa_bits)
-    list.emplace_back("rounding", "to the nearest float with " + std::to_string(mantissa_bits) +
-                                      " explicit mantissa bits, ties to even; 0 and 1 are exact");
+  if (fraction_bits)
+    list.emplace_back("rounding", file_schema == schema_1
+                                      ? "to the nearest float with 12 explicit mantissa bits, ties to even; 0 and 1 are exact"
+                                      : "to the nearest multiple of 2^-" + std::to_string(fraction_bits) + ", ties to even");
   return list;
 }
 

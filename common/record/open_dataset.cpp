@@ -198,7 +198,7 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
   array.bytes.assign(bytes, '\0');
   if (bytes == 0) return array;
   ChunkWalk walk(dims_, width);
-  std::string raw(walk.chunk_bytes(), '\0'), stored;
+  std::string spare, stored;
   std::size_t number = 0;
   for (bool more = true; more; more = walk.next(), ++number) {
     hsize_t size = 0;
@@ -210,9 +210,10 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
     if (H5Dread_chunk(dataset_, H5P_DEFAULT, walk.offset(), &skipped, stored.data()) < 0)
       return wrong(fmt::format("chunk {} cannot be read", number));
     if (skipped) return wrong(fmt::format("chunk {} skipped a filter", number));
+    const std::span<char> raw = walk.place_in(array.bytes, spare);
     const std::string_view fault = decode_chunk(stored, width, raw);
     if (!fault.empty()) return wrong(fmt::format("chunk {}: {}", number, fault));
-    walk.scatter(raw, array.bytes);
+    walk.put(raw, array.bytes);
   }
   return array;
 }
@@ -232,14 +233,14 @@ std::string OpenDataset::wrong_uses(const std::vector<UseRow>& expected) const {
              : "the attribute 'REFERENCE_LIST' does not name the datasets along this scale";
 }
 
-std::vector<std::string> OpenDataset::broken_attributes(const std::vector<OpenDataset>& all) const {
+std::vector<std::string> OpenDataset::broken_attributes(const std::vector<OpenDataset>& all, std::string_view file_schema) const {
   std::vector<std::string> broken;
   std::set<std::string> known;
   const auto expect = [&](const std::string& name, const std::string& text) {
     known.insert(name);
     if (read_text(dataset_, name) != text) broken.push_back(fmt::format("{}: the attribute '{}' is not '{}'", spec_.path, name, text));
   };
-  for (const auto& [name, text] : spec_.attributes()) expect(name, text);
+  for (const auto& [name, text] : spec_.attributes(file_schema)) expect(name, text);
   if (spec_.is_scale()) {
     expect("CLASS", "DIMENSION_SCALE");
     expect("NAME", spec_.path.substr(spec_.path.rfind('/') + 1));

@@ -37,8 +37,8 @@ class OpenDataset {
 
   std::optional<grammar::Array> read(std::size_t& budget, std::size_t file_bytes, std::vector<std::string>& why) const;
 
-  // Attributes, those of dimension scales included, given all datasets of the file in order.
-  std::vector<std::string> broken_attributes(const std::vector<OpenDataset>& all) const;
+  // Attributes, those of dimension scales included, given all datasets of the file in order and the file's schema.
+  std::vector<std::string> broken_attributes(const std::vector<OpenDataset>& all, std::string_view file_schema) const;
 
  private:
   std::string wrong_type() const;

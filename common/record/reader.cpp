@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -160,7 +159,8 @@ void Reader::provenance() {
 }
 
 void Reader::scales() {
-  for (const h5::OpenDataset& one : open_) keep(one.broken_attributes(open_));
+  const std::string file_schema = h5::text_attribute(file_, "/", "fracfarm_schema").value_or("");
+  for (const h5::OpenDataset& one : open_) keep(one.broken_attributes(open_, file_schema));
 }
 
 // What follows from the rest must be what is written.
@@ -200,22 +200,6 @@ Result<Record> read_record(const std::filesystem::path& path) {
   Result<Record> record = read_record_bytes(*bytes);
   if (!record) return fail(record.error().fault, path.string() + ": " + record.error().message);
   return record;
-}
-
-Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t size) {
-  if (size > record_file_limit)
-    return fail(Fault::bad_request, fmt::format("{} bytes is more than a record may have ({})", size, record_file_limit));
-  std::ifstream in(path, std::ios::binary);
-  in.seekg(0, std::ios::end);
-  const std::streamoff length = in.tellg();
-  if (!in || length < 0) return fail(Fault::node_lost, "cannot open " + path.string());
-  if (offset > static_cast<std::uint64_t>(length) || size > static_cast<std::uint64_t>(length) - offset)
-    return fail(Fault::node_lost, fmt::format("{} has {} bytes, fewer than {} + {}", path.string(), length, offset, size));
-  std::string bytes(size, '\0');
-  in.seekg(static_cast<std::streamoff>(offset));
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!in) return fail(Fault::node_lost, "cannot read " + path.string());
-  return bytes;
 }
 
 }  // namespace fracfarm

@@ -27,7 +27,4 @@ Reading read_leniently(const std::string& bytes);  // whose seal was found to fi
 Result<Record> read_record(const std::filesystem::path& path);
 Result<Record> read_record_bytes(const std::string& bytes);
 
-// The part of a file, for records inside a shard. Errors: NODE_LOST where the file is shorter.
-Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t size);
-
 }  // namespace fracfarm

@@ -1,22 +1,13 @@
 #include "common/record/rounding.hpp"
 
-#include <bit>
-#include <cmath>
-#include <cstdint>
-
 namespace fracfarm {
 
-float keep_mantissa_bits(float value, int bits) {
-  if (!std::isfinite(value)) return value;
-  const int dropped = 23 - bits;
-  std::uint32_t word = std::bit_cast<std::uint32_t>(value);
-  const std::uint32_t half = (1u << dropped) / 2u, odd = word >> dropped & 1u;
-  word += half - 1u + odd;  // a carry runs into the exponent, which is the next float up
-  return std::bit_cast<float>(word & ~((1u << dropped) - 1u));
-}
-
-void keep_mantissa_bits(std::span<float> values, int bits) {
-  for (float& value : values) value = keep_mantissa_bits(value, bits);
+void round_damage(std::span<float> values) {
+  constexpr float coarse = 1 << (23 - psi_fraction_bits);  // floats from here to its double lie 2^-psi_fraction_bits apart
+  for (float& value : values) {
+    const float rounded = (value + coarse) - coarse;
+    value = value >= 0.0f && value <= 1.0f ? rounded : value;
+  }
 }
 
 }  // namespace fracfarm

@@ -1,15 +1,16 @@
-// Lossy storage of float fields: fewer mantissa bits, so that they compress. Rounding is monotone: what did not heal does not heal after
-// it.
+// Lossy storage of damage: fewer bits, so that it compresses. Rounding is monotone: what did not heal does not heal after it.
 #pragma once
 
 #include <span>
 
 namespace fracfarm {
 
-inline constexpr int psi_mantissa_bits = 12;  // relative error at most 2^-13; 0 and 1 are exact
+// Stored damage is a multiple of 2^-13: within 2^-14 of the value, 0 and 1 exact. Not 2^-12: its multiple next to the through-crack
+// threshold lies below it, and would hide a path of damage just above.
+inline constexpr int psi_fraction_bits = 13;
 
-// Rounds to the nearest float with `bits` explicit mantissa bits (of 23), ties to even. Values that are not finite stay as they are.
-float keep_mantissa_bits(float value, int bits);  // 1 <= bits <= 22
-void keep_mantissa_bits(std::span<float> values, int bits);
+// Rounds values in [0, 1] to the nearest multiple of 2^-psi_fraction_bits, ties to even. All others stay as they are, for the validator to
+// find.
+void round_damage(std::span<float> values);
 
 }  // namespace fracfarm

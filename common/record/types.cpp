@@ -70,13 +70,34 @@ void ChunkWalk::each_run(Copy copy) const {
   }
 }
 
-void ChunkWalk::gather(const std::string& array, std::string& chunk) const {
-  std::fill(chunk.begin(), chunk.end(), '\0');
-  each_run([&](std::size_t from, std::size_t to, std::size_t bytes) { std::memcpy(chunk.data() + to, array.data() + from, bytes); });
+std::size_t ChunkWalk::position() const {
+  std::size_t element = 0;
+  for (std::size_t d = 0; d < dims_.size(); ++d) element = element * dims_[d] + offset_[d];
+  return element * width_;
 }
 
-void ChunkWalk::scatter(const std::string& chunk, std::string& array) const {
-  each_run([&](std::size_t to, std::size_t from, std::size_t bytes) { std::memcpy(array.data() + to, chunk.data() + from, bytes); });
+bool ChunkWalk::lies_in_one_piece() const {
+  for (std::size_t d = 1; d < dims_.size(); ++d)
+    if (chunk_[d] != dims_[d]) return false;
+  return offset_[0] + chunk_[0] <= dims_[0];
+}
+
+std::string_view ChunkWalk::bytes_of(const std::string& array, std::string& spare) const {
+  if (lies_in_one_piece()) return std::string_view(array).substr(position(), chunk_bytes_);
+  spare.assign(chunk_bytes_, '\0');
+  each_run([&](std::size_t from, std::size_t to, std::size_t bytes) { std::memcpy(spare.data() + to, array.data() + from, bytes); });
+  return spare;
+}
+
+std::span<char> ChunkWalk::place_in(std::string& array, std::string& spare) const {
+  if (lies_in_one_piece()) return {array.data() + position(), chunk_bytes_};
+  spare.resize(chunk_bytes_);
+  return spare;
+}
+
+void ChunkWalk::put(std::span<const char> bytes, std::string& array) const {
+  if (lies_in_one_piece()) return;
+  each_run([&](std::size_t to, std::size_t from, std::size_t count) { std::memcpy(array.data() + to, bytes.data() + from, count); });
 }
 
 }  // namespace fracfarm::h5

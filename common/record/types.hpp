@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,14 +29,18 @@ class ChunkWalk {
  public:
   ChunkWalk(const std::vector<std::size_t>& dims, std::size_t width);
 
-  std::size_t chunk_bytes() const { return chunk_bytes_; }
   const hsize_t* offset() const { return offset_.data(); }
   bool next();  // false after the last chunk
 
-  void gather(const std::string& array, std::string& chunk) const;   // array -> chunk
-  void scatter(const std::string& chunk, std::string& array) const;  // chunk -> array
+  // The chunk's bytes: of the array itself where they lie there in one piece, else gathered in `spare`.
+  std::string_view bytes_of(const std::string& array, std::string& spare) const;
+  // Where to put the chunk's bytes: the array itself, or `spare`. Then put() brings them home.
+  std::span<char> place_in(std::string& array, std::string& spare) const;
+  void put(std::span<const char> bytes, std::string& array) const;
 
  private:
+  std::size_t position() const;    // of the chunk's first byte in the array
+  bool lies_in_one_piece() const;  // a whole chunk of all trailing indices
   template <class Copy>
   void each_run(Copy copy) const;  // copy(byte in array, byte in chunk, bytes)
 

@@ -22,7 +22,6 @@ namespace {
 using grammar::Array;
 using grammar::DatasetSpec;
 
-constexpr int deflate_level = 3;  // of libdeflate: 2 % larger than 6, a third less time
 // Attributes and links are kept in the checksummed object header up to this many, not in a heap: smaller, and HDF5 1.10 frees memory that
 // it never set when it lists a damaged heap.
 constexpr unsigned header_attributes = 256, header_members = 256;
@@ -146,10 +145,9 @@ void Writer::dataset(const DatasetSpec& spec, const Array& array) {
 void Writer::fill(hid_t dataset, const Array& array) {
   const std::size_t width = grammar::width_of(array.type);
   h5::ChunkWalk walk(array.dims, width);
-  std::string raw(walk.chunk_bytes(), '\0');
+  std::string spare;
   for (bool more = true; more; more = walk.next()) {
-    walk.gather(array.bytes, raw);
-    const std::string stored = encode_chunk(raw, width, deflate_level);
+    const std::string_view stored = encode_chunk(walk.bytes_of(array.bytes, spare), width);
     must(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, walk.offset(), stored.size(), stored.data()));
   }
 }
@@ -223,20 +221,28 @@ std::string broken_text(const Record& record) {
   return {};
 }
 
-}  // namespace
-
-Record as_stored(const Record& record) {
-  Record stored = record;
-  for (std::vector<float>& frame : stored.phase_field.psi) keep_mantissa_bits(frame, psi_mantissa_bits);
-  keep_mantissa_bits(stored.phase_field.psi_initial, psi_mantissa_bits);
-  keep_mantissa_bits(stored.phase_field.psi_failure, psi_mantissa_bits);
-  return stored;
+Result<void> write_and_compare(const std::filesystem::path& path, const std::string& bytes) {
+  if (Result<void> written = write_atomically(path, bytes); !written) return written;
+  drop_cached(path);
+  const Result<std::string> back = read_file(path, bytes.size());
+  if (!back) return tl::unexpected(back.error());
+  if (*back != bytes) return fail(Fault::output_bad, path.string() + " read back differently after it was synced");
+  return {};
 }
 
-Result<std::string> record_bytes(const Record& given) {
+}  // namespace
+
+Record as_stored(Record record) {
+  for (std::vector<float>& frame : record.phase_field.psi) round_damage(frame);
+  round_damage(record.phase_field.psi_initial);
+  round_damage(record.phase_field.psi_failure);
+  return record;
+}
+
+Result<std::string> record_bytes(Record given) {
   if (std::string why = broken_shape(given); !why.empty()) return fail(Fault::output_bad, why);
   if (std::string why = broken_text(given); !why.empty()) return fail(Fault::output_bad, why);
-  const Record record = as_stored(given);
+  const Record record = as_stored(std::move(given));
   const std::vector<ContentCheck> checks = check_content(record);
   Writer writer;
   for (std::string_view path : grammar::groups()) writer.group(path);
@@ -249,10 +255,12 @@ Result<std::string> record_bytes(const Record& given) {
   return writer.finish();
 }
 
-Result<std::string> write_record(const Record& record, const std::filesystem::path& path) {
-  const Result<std::string> bytes = record_bytes(record);
+Result<std::string> write_record(Record record, const std::filesystem::path& path, Keeping keeping) {
+  const Result<std::string> bytes = record_bytes(std::move(record));
   if (!bytes) return bytes;
-  if (Result<void> written = write_atomically(path, *bytes); !written) return tl::unexpected(written.error());
+  const bool durable = keeping == Keeping::durable;
+  if (auto written = durable ? write_and_compare(path, *bytes) : write_unsynced(path, *bytes); !written)
+    return tl::unexpected(written.error());
   return sha256_hex(*bytes);
 }
 

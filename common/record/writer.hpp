@@ -1,4 +1,4 @@
-// Records out. The file is made in memory and written in one go: beside, synced, renamed. The same record gives the same bytes.
+// Records out. The file is made in memory and written in one go, beside and renamed. The same record gives the same bytes.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,18 @@
 namespace fracfarm {
 
 // The record as a file stores it: float fields rounded (rounding.hpp).
-Record as_stored(const Record& record);
+Record as_stored(Record record);
 
 // The bytes of the record file, seal included. Errors: OUTPUT_BAD where sizes do not fit together or a text is not printable ASCII.
-Result<std::string> record_bytes(const Record& record);
+Result<std::string> record_bytes(Record record);
 
-// Writes path.part, flushes, fsyncs, renames to path; gives the SHA-256 (hex) of the file. Errors: those of record_bytes, NODE_LOST.
-Result<std::string> write_record(const Record& record, const std::filesystem::path& path);
+enum class Keeping {
+  durable,  // synced, read back and compared
+  scratch,  // a crash may take it: the worker judges it at once and keeps it in a shard
+};
+
+// Writes path.part and renames it to path; gives the SHA-256 (hex) of the file. Errors: those of record_bytes, NODE_LOST, OUTPUT_BAD where
+// it reads back differently.
+Result<std::string> write_record(Record record, const std::filesystem::path& path, Keeping keeping);
 
 }  // namespace fracfarm

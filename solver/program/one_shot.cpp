@@ -122,7 +122,7 @@ int solve_one(const OneShot& options) {
   task.wall_budget_s = options.wall_budget_s;
   Result<TaskEnd> end = [&] {
     ProgressReport progress(options.quiet);
-    return run_task(task, *scene, std::ref(progress));
+    return run_task(task, *scene, Keeping::durable, std::ref(progress));
   }();
   if (!end) return report_error(end.error(), exit_failed, options);
   if (end->stopped) {

@@ -14,11 +14,16 @@ namespace {
 
 constexpr std::size_t text_limit = 2000;  // characters of one entry
 
-std::string cpu_model() {
+std::string read_cpu_model() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);)
     if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
   return "unknown";
+}
+
+const std::string& cpu_model() {
+  static const std::string model = read_cpu_model();  // once for all jobs of a child
+  return model;
 }
 
 std::string peak_memory_bytes() {

@@ -4,7 +4,6 @@
 
 #include <new>
 
-#include "common/record/writer.hpp"
 #include "common/scene/parse.hpp"
 #include "common/scene/pattern.hpp"
 #include "solver/boundary.hpp"
@@ -63,7 +62,7 @@ Summary summarise(const RunResult& result) {
   return summary;
 }
 
-Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, const std::function<void(long long, double, double)>& progress) {
+Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, Keeping keeping, const Progress& progress) {
   RunControl control;
   control.checkpoint = task.checkpoint;
   control.checkpoint_key = task.key;
@@ -75,7 +74,7 @@ Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, const std:
   if (!result) return tl::unexpected(result.error());
   if (result->stopped) return TaskEnd{true, {}};
   TaskEnd end{false, summarise(*result)};
-  const Result<std::string> digest = write_record(make_record(task, scene, *result), task.output);
+  const Result<std::string> digest = write_record(make_record(task, scene, *result), task.output, keeping);
   if (!digest) return tl::unexpected(digest.error());
   end.summary.record_sha256 = *digest;
   return end;
@@ -83,9 +82,9 @@ Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, const std:
 
 }  // namespace
 
-Result<TaskEnd> run_task(const Task& task, const Scene& scene, const std::function<void(long long, double, double)>& progress) {
+Result<TaskEnd> run_task(const Task& task, const Scene& scene, Keeping keeping, const Progress& progress) {
   try {
-    return solve_and_write(task, scene, progress);
+    return solve_and_write(task, scene, keeping, progress);
   } catch (const std::bad_alloc&) {
     return fail(Fault::out_of_memory,
                 fmt::format("no memory for a grid of {} x {} cells", scene.phase_field.cells_x, scene.phase_field.cells_z));

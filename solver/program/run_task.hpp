@@ -1,6 +1,7 @@
 // One task from scene text to a record on disk: what the one-shot command and the kept-alive child share.
 #pragma once
 
+#include "common/record/writer.hpp"
 #include "common/scene/scene.hpp"
 #include "common/task/task.hpp"
 #include "solver/solve.hpp"
@@ -12,8 +13,10 @@ struct TaskEnd {
   Summary summary;
 };
 
+using Progress = std::function<void(long long step, double time, double horizon)>;
+
 // Solves and writes the record. Errors: BAD_REQUEST (scene), SOLVER_NUMERIC, OUT_OF_MEMORY, NODE_LOST, OUTPUT_BAD; never throws.
-Result<TaskEnd> run_task(const Task& task, const Scene& scene, const std::function<void(long long, double, double)>& progress);
+Result<TaskEnd> run_task(const Task& task, const Scene& scene, Keeping keeping, const Progress& progress);
 
 // All problems of a scene in one sentence.
 std::string problems_text(const Problems& problems);

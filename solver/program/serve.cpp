@@ -1,5 +1,6 @@
 #include "solver/program/serve.hpp"
 
+#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -65,6 +66,13 @@ bool say(const Report& report) {
   return true;
 }
 
+// Every run needs the same tens of megabytes as the one before it; fresh pages would cost a fault each. More than a run of the usual size
+// needs goes back to the system.
+void keep_freed_memory() {
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 128 << 20);
+}
+
 Report fault_report(const std::string& key, Error error) {
   Report report;
   report.kind = Report::Kind::fault;
@@ -87,7 +95,7 @@ Report answer(const Task& task) {
     report.step = step, report.time = time, report.horizon = horizon;
     say(report);
   };
-  Result<TaskEnd> end = run_task(task, *scene, progress);
+  Result<TaskEnd> end = run_task(task, *scene, Keeping::scratch, progress);
   if (!end) return fault_report(task.key, end.error());
   Report report;
   report.kind = end->stopped ? Report::Kind::stopped : Report::Kind::done;
@@ -99,6 +107,7 @@ Report answer(const Task& task) {
 }  // namespace
 
 int serve() {
+  keep_freed_memory();
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   Report ready;
   ready.build_id = build_info().build_id;

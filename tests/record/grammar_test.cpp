@@ -116,6 +116,18 @@ TEST_CASE("attributes that are missing, foreign or changed are named") {
   CHECK(has(said_after([](hid_t f) { add_text(f, "/z", "NAME", "y"); }), "'NAME' is not 'z'"));
 }
 
+TEST_CASE("a record of the first schema is read, and one that mixes the two is not") {
+  const std::string rounding = "to the nearest float with 12 explicit mantissa bits, ties to even; 0 and 1 are exact";
+  const auto round_as_first = [&](hid_t f) {
+    for (const char* field : {"/psi", "/psi_initial", "/psi_failure"}) add_text(f, field, "rounding", rounding);
+  };
+  const auto call_first = [](hid_t f) { add_text(f, "/", "fracfarm_schema", "fracfarm.record/1"); };
+  CHECK(said_after([&](hid_t f) { round_as_first(f), call_first(f); }).empty());
+  CHECK(has(said_after(call_first), "'rounding' is not"));
+  CHECK(has(said_after(round_as_first), "'rounding' is not"));
+  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "fracfarm_schema", "fracfarm.record/0"); }), "a value that is not allowed"));
+}
+
 TEST_CASE("every dataset of the grammar is missed where it is gone") {
   for (const grammar::DatasetRow& row : grammar::datasets()) {
     const std::string path = row.spec.path;

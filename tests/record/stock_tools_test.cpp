@@ -33,7 +33,7 @@ struct Written {
   Record record = as_stored(sample::record({31, 23, 7, 50}));
   std::string path = folder.path() / "record.h5";
 
-  Written() { write_record(record, path).value(); }
+  Written() { write_record(record, path, Keeping::scratch).value(); }
   std::string expected() const {
     const std::vector<float>& last = record.phase_field.psi.back();
     return fmt::format("{} {} {:.17g} {:.9g} {:.9g}", path, record.phase_field.time.size(), record.phase_field.time.back(),

@@ -37,10 +37,10 @@ struct Files {
 
   Files() {
     Record record = sample::record();
-    write_record(record, sound).value();
+    write_record(record, sound, Keeping::scratch).value();
     record.judgement.confidence = 0.99;
     record.phase_field.mask_initial[3] = 1;
-    write_record(record, wrong).value();
+    write_record(record, wrong, Keeping::scratch).value();
     std::ofstream(cut) << read_file(sound, 1 << 30).value().substr(0, 9000);
   }
 };

@@ -4,7 +4,6 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 
 #include "common/base/atomic_file.hpp"
 #include "common/base/hash.hpp"
@@ -72,7 +71,8 @@ TEST_CASE("a scene without cracks and criteria without times are stored as such"
 TEST_CASE("the file is complete at its path, its digest is returned and nothing is left beside it") {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "record.h5";
-  const std::string digest = write_record(sample::record(), path).value();
+  const Keeping keeping = GENERATE(Keeping::durable, Keeping::scratch);
+  const std::string digest = write_record(sample::record(), path, keeping).value();
   CHECK(digest == sha256_file(path).value());
   CHECK(broken_seal(read_file(path, 1 << 30).value()).empty());
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
@@ -80,7 +80,7 @@ TEST_CASE("the file is complete at its path, its digest is returned and nothing 
 }
 
 TEST_CASE("a folder that is not there is an error, not a crash") {
-  CHECK(write_record(sample::record(), "/nonexistent/folder/record.h5").error().fault == Fault::node_lost);
+  CHECK(write_record(sample::record(), "/nonexistent/folder/record.h5", Keeping::scratch).error().fault == Fault::node_lost);
 }
 
 TEST_CASE("sizes that do not fit together are refused in words") {
@@ -114,14 +114,4 @@ TEST_CASE("texts and names that fixed-length ASCII cannot hold are refused in wo
   record = sample::record();
   record.series.columns[1].name = "../step";
   CHECK(why_not(record).find("../step") != std::string::npos);
-}
-
-TEST_CASE("a record inside a larger file is read by offset and size") {
-  const test::TemporaryFolder folder;
-  const std::string bytes = record_bytes(sample::record()).value();
-  std::ofstream(folder.path() / "shard") << std::string(1000, 'a') << bytes << std::string(500, 'b');
-  CHECK(read_part(folder.path() / "shard", 1000, bytes.size()).value() == bytes);
-  CHECK_FALSE(read_part(folder.path() / "shard", 1000, bytes.size() + 501));
-  CHECK_FALSE(read_part(folder.path() / "shard", ~0ull, 2));
-  CHECK_FALSE(read_part(folder.path() / "none", 0, 1));
 }
