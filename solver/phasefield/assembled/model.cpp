@@ -1,0 +1,133 @@
+#include "solver/phasefield/assembled/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/phasefield/slots.hpp"
+
+namespace fracfarm::phasefield::assembled {
+namespace {
+
+const Material& material_at(const Scene& scene, double z) {
+  for (const Layer& layer : scene.layers)
+    if (&layer == &scene.layers.back() || z < layer.below) return layer.material;
+  return scene.layers.back().material;
+}
+
+double width_of(const LengthScale& scale, const Material& material) {
+  if (scale.kind == LengthScale::Kind::metres) return scale.metres;
+  return scale.kind == LengthScale::Kind::half ? 0.5 * material.characteristic_width : material.characteristic_width;
+}
+
+ElementRow element_row(const Material& material, const PhaseFieldSettings& settings) {
+  const double width = width_of(settings.length_scale, material);
+  const auto surface = settings.surface == SurfaceModel::at1 ? law::at1(material.Gc, width) : law::at2(material.Gc, width);
+  return {make_law(material, settings), surface, material.Gc, width, material.density};
+}
+
+double edge_of_central_differences(const Material& material, const PhaseFieldSettings& settings, const Grid& grid) {
+  const Elasticity& given = material.elasticity;
+  law::Stiffness<double> C{given.C11, given.C13, given.C33, given.C55};
+  if (settings.plane == Plane::stress) C = law::plane_stress(C);
+  const double per_xx = 1.0 / (grid.hx * grid.hx), per_zz = 1.0 / (grid.hz * grid.hz);
+  return std::sqrt(material.density / std::max(C.C11 * per_xx + C.C55 * per_zz, C.C33 * per_zz + C.C55 * per_xx));
+}
+
+SideNodes side_nodes(const Model& model) {
+  const Grid& grid = model.grid;
+  SideNodes nodes;
+  const auto add = [&](Side side, int count, double h, auto index) {
+    for (int k = 0; k < count; ++k)
+      nodes[static_cast<std::size_t>(side)].push_back(
+          {static_cast<std::size_t>(index(k)), k * h, k > 0 ? (k - 0.5) * h : 0.0, k + 1 < count ? (k + 0.5) * h : (count - 1) * h});
+  };
+  add(Side::left, grid.rows, grid.hz, [&](int k) { return model.node(0, k); });
+  add(Side::right, grid.rows, grid.hz, [&](int k) { return model.node(grid.columns - 1, k); });
+  add(Side::bottom, grid.columns, grid.hx, [&](int k) { return model.node(k, 0); });
+  add(Side::top, grid.columns, grid.hx, [&](int k) { return model.node(k, grid.rows - 1); });
+  return nodes;
+}
+
+void set_rows(Model& model, const Scene& scene) {
+  model.mass = Vector::Zero(2 * model.nodes());
+  model.stable_dt = INFINITY;
+  for (int j = 0; j < model.grid.cells_z(); ++j) {
+    const Material& material = material_at(scene, (j + 0.5) * model.grid.hz);
+    model.element_rows.push_back(element_row(material, model.settings));
+    model.linear = model.linear && is_linear(model.element_rows.back().law);
+    model.yields = model.yields || std::holds_alternative<PlasticLaw>(model.element_rows.back().law);
+    model.stable_dt = std::min(model.stable_dt, edge_of_central_differences(material, model.settings, model.grid));
+    for (int i = 0; i < model.grid.cells_x(); ++i)
+      for (const int n : model.nodes_of(i, j))
+        for (const int axis : {0, 1}) model.mass[2 * n + axis] += model.element.weight * material.density;
+  }
+}
+
+// Directions of rigid motion (two shifts and a turn) that held displacements take away.
+class RigidMotions {
+ public:
+  explicit RigidMotions(const Grid& grid) : grid_(grid) {}
+
+  // True where holding this displacement takes a motion away that was still free.
+  bool take(std::size_t displacement) {
+    const int node = static_cast<int>(displacement / 2), size = std::max(grid_.columns, grid_.rows);
+    const double x = static_cast<double>(node % grid_.columns) / size, z = static_cast<double>(node / grid_.columns) / size;
+    Eigen::Vector3d motion = displacement % 2 == 0 ? Eigen::Vector3d(1.0, 0.0, -z) : Eigen::Vector3d(0.0, 1.0, x);
+    for (const Eigen::Vector3d& taken : taken_) motion -= taken.dot(motion) * taken;
+    if (motion.norm() < 1e-9) return false;
+    taken_.push_back(motion.normalized());
+    return true;
+  }
+  bool all_taken() const { return taken_.size() == 3; }
+
+ private:
+  const Grid& grid_;
+  std::vector<Eigen::Vector3d> taken_;
+};
+
+// A body without inertia needs a place: corners are held where the loads leave a rigid motion free.
+void support(Model& model, std::vector<bool>& held) {
+  RigidMotions motions(model.grid);
+  for (std::size_t d = 0; d < held.size() && !motions.all_taken(); ++d)
+    if (held[d]) motions.take(d);
+  const int corner = model.node(0, 0), right = model.node(model.grid.columns - 1, 0), top = model.node(0, model.grid.rows - 1);
+  for (const int candidate : {2 * corner, 2 * corner + 1, 2 * right + 1, 2 * top}) {
+    const auto d = static_cast<std::size_t>(candidate);
+    if (motions.all_taken() || held[d] || !motions.take(d)) continue;
+    held[d] = true;
+    model.supports.push_back(d);
+  }
+}
+
+void number_equations(Model& model) {
+  std::vector<bool> held(static_cast<std::size_t>(2 * model.nodes()), false);
+  for (const Motion& motion : model.boundary.motions)
+    for (const std::size_t n : motion.nodes) held[2 * n + (motion.axis == Axis::z)] = true;
+  for (const Told& told : model.prescription.told)
+    held[static_cast<std::size_t>(2 * model.node(told.column, told.row) + (told.axis == Axis::z))] = true;
+  if (model.settings.integrator == Integrator::quasi_static) support(model, held);
+  for (const bool is_held : held) model.equation.push_back(is_held ? -1 : model.equations++);
+  for (const unsigned char is_held : model.mask) model.psi_equation.push_back(is_held ? -1 : model.psi_equations++);
+}
+
+}  // namespace
+
+Model build_model(const Scene& scene, Prescription prescription) {
+  Model model;
+  model.settings = scene.phase_field;
+  const PhaseFieldSettings& settings = model.settings;
+  model.grid = {settings.cells_x + 1, settings.cells_z + 1, scene.width / settings.cells_x, scene.height / settings.cells_z};
+  model.element = make_element(settings.quadrature, model.grid.hx, model.grid.hz);
+  set_rows(model, scene);
+  model.boundary = build_boundary(scene, side_nodes(model));
+  model.prescription = std::move(prescription);
+  model.mask = slot_mask(scene.cracks, model.grid);
+  number_equations(model);
+  model.first_history.resize(static_cast<std::size_t>(4 * model.elements()));
+  for (int e = 0; e < model.elements(); ++e)
+    std::fill_n(model.first_history.begin() + 4 * e, 4,
+                model.element_rows[static_cast<std::size_t>(e / model.grid.cells_x())].surface.floor);
+  return model;
+}
+
+}  // namespace fracfarm::phasefield::assembled

@@ -1,0 +1,115 @@
+#include "solver/phasefield/assembled/solvers.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <algorithm>
+
+#include "solver/phasefield/assembled/points.hpp"
+
+namespace fracfarm::phasefield::assembled {
+namespace {
+
+constexpr int newton_limit = 60;
+constexpr int line_search_limit = 8;
+constexpr double flat = 0.7;               // a step is short enough where the residual along it is below this share of its start
+constexpr double stalled = 1e-6;           // a residual that no iteration lowers any more is rounding if it is below this
+constexpr double remembered_force = 1e-3;  // of the largest force so far: residuals below a broken body's own forces do not matter
+constexpr double loose = 1e-3;             // linear systems inside Newton's iterations
+constexpr int damage_iterations_limit = 5000;
+
+class NewtonSolve {
+ public:
+  NewtonSolve(const Model& model, const Balance& balance, State& state, Scratch& scratch)
+      : model_(model), balance_(balance), state_(state), scratch_(scratch), residual_(model.equations) {}
+
+  Result<void> go() {
+    evaluate(state_.u);
+    double last = INFINITY;
+    for (int k = 0; k < newton_limit; ++k) {
+      const double size = residual_.norm(), scale = std::max(scratch_.force_scale, remembered_force * state_.largest_force);
+      if (!std::isfinite(size)) return fail(Fault::solver_numeric, "the residual of the displacements is not finite");
+      if (size <= balance_.tolerance * scale || (size > 0.5 * last && size <= stalled * scale)) return {};
+      last = size;
+      assemble_stiffness(model_, state_, state_.u, balance_.inertia, scratch_);
+      const double wanted = 0.1 * balance_.tolerance * scale;
+      auto direction = scratch_.displacement_solver.solve(scratch_.stiffness.lower(), residual_,
+                                                          model_.linear ? wanted : std::max(wanted, loose * size));
+      if (!direction) return tl::unexpected(direction.error());
+      advance(*direction);
+    }
+    return fail(Fault::solver_numeric, fmt::format("the displacements did not converge in {} iterations: residual {:.3g} N/m of {:.3g} N/m",
+                                                   newton_limit, residual_.norm(), scratch_.force_scale));
+  }
+
+ private:
+  void evaluate(const Vector& u) {
+    respond(model_, state_, u, Flow::on, scratch_);
+    compute_force(model_, balance_.time, scratch_);
+    for (std::size_t d = 0; d < model_.equation.size(); ++d) {
+      if (model_.equation[d] < 0) continue;
+      const auto at = static_cast<Eigen::Index>(d);
+      residual_[model_.equation[d]] = scratch_.force[at];
+      if (balance_.inertia > 0.0) residual_[model_.equation[d]] -= balance_.inertia * model_.mass[at] * (u[at] - (*balance_.predictor)[at]);
+    }
+  }
+
+  void move(const Vector& from, const Vector& direction, double share) {
+    for (std::size_t d = 0; d < model_.equation.size(); ++d)
+      if (model_.equation[d] >= 0)
+        state_.u[static_cast<Eigen::Index>(d)] = from[static_cast<Eigen::Index>(d)] + share * direction[model_.equation[d]];
+    evaluate(state_.u);
+  }
+
+  // The potential is convex: its slope along the direction rises from -residual . direction and passes 0 at the best share.
+  void advance(const Vector& direction) {
+    const Vector from = state_.u;
+    const double first = residual_.dot(direction);
+    double share = 1.0;
+    move(from, direction, share);
+    for (int k = 0; k < line_search_limit && !model_.linear; ++k) {
+      const double slope = residual_.dot(direction);
+      if (!(slope < -flat * first)) return;
+      share *= std::clamp(first / (first - slope), 0.1, 0.9);
+      move(from, direction, share);
+    }
+  }
+
+  const Model& model_;
+  const Balance& balance_;
+  State& state_;
+  Scratch& scratch_;
+  Vector residual_;  // by equation, N/m
+};
+
+}  // namespace
+
+Result<void> solve_displacement(const Model& model, const Balance& balance, State& state, Scratch& scratch) {
+  return NewtonSolve(model, balance, state, scratch).go();
+}
+
+Result<void> solve_damage(const Model& model, const Vector& guess, const Vector& floor, State& state, Scratch& scratch) {
+  assemble_damage(model, scratch);
+  Vector start(model.psi_equations);
+  for (std::size_t n = 0; n < model.psi_equation.size(); ++n)
+    if (model.psi_equation[n] >= 0) start[model.psi_equation[n]] = guess[static_cast<Eigen::Index>(n)];
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower> solver(scratch.damage.lower());
+  solver.setTolerance(model.damage_tolerance);
+  solver.setMaxIterations(damage_iterations_limit);
+  const Vector psi = solver.solveWithGuess(scratch.damage_source, start);
+  state.iterations += solver.iterations();
+  if (solver.info() != Eigen::Success || !psi.allFinite())
+    return fail(Fault::solver_numeric,
+                fmt::format("the phase-field equation did not converge: {} iterations, residual {:.1e}, limit {:.1e}", solver.iterations(),
+                            solver.error(), model.damage_tolerance));
+  const bool imposed = model.settings.quadrature == Quadrature::gauss;
+  for (std::size_t n = 0; n < model.psi_equation.size(); ++n) {
+    if (model.psi_equation[n] < 0) continue;
+    const auto at = static_cast<Eigen::Index>(n);
+    const double value = psi[model.psi_equation[n]];
+    state.psi[at] = imposed ? std::clamp(value, std::clamp(floor[at], 0.0, 1.0), 1.0) : value;
+  }
+  return {};
+}
+
+}  // namespace fracfarm::phasefield::assembled
