@@ -8,9 +8,8 @@
 
 namespace fracfarm {
 
-// One row every so many steps: fine enough that a stress drop moves by less than 1 % of the shortest runs, small in the record.
+// One row every so many steps, and one at the step of the stress drop, so that the series gives it to the step.
 inline constexpr long long steps_per_row = 4;
-inline constexpr long long residual_grace_steps = 64;  // the impact's first steps have little energy to compare with
 
 class RunLog {
  public:
@@ -18,8 +17,8 @@ class RunLog {
 
   // After the step that made n: watch, row, frame where they are due. Errors: SOLVER_NUMERIC.
   Result<void> note(const Simulation& simulation, long long n);
-  // The last instant becomes a row too.
-  void close(const Simulation& simulation, long long n);
+  // The last instant becomes a row too. Errors: SOLVER_NUMERIC.
+  Result<void> close(const Simulation& simulation, long long n);
 
   const FailureWatch& watch() const { return watch_; }
   const Series& series() const { return series_; }
@@ -31,7 +30,8 @@ class RunLog {
   bool load(ArchiveReader& archive, const Simulation& simulation);
 
  private:
-  void add_row(const Simulation& simulation, long long n);
+  bool row_is_due(const Simulation& simulation, long long n) const;
+  Result<void> add_row(const Simulation& simulation, long long n);
   Result<void> check_health(long long n) const;
 
   double dt_;

@@ -27,7 +27,7 @@ class Run {
         control_(control),
         simulation_(make_phase_field(scene)),
         dt_(control.step_scale * scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())),
-        last_step_(static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9))),
+        last_step_(std::max(1LL, static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9)))),
         log_(scene, dt_) {}
 
   Result<RunResult> go() {
@@ -47,7 +47,7 @@ class Run {
  private:
   Result<void> resume_or_start() {
     if (resume()) return {};
-    if (auto started = simulation_->start(dt_); !started) return started;
+    if (auto started = simulation_->start(dt_); !started) return numeric_trouble(started.error());
     psi_initial_ = damage_field(*simulation_);
     return log_.note(*simulation_, 0);
   }
@@ -71,7 +71,7 @@ class Run {
       std::filesystem::remove(control_.checkpoint, ignored);
     }
     if (result.stopped) return result;
-    log_.close(*simulation_, n_);
+    if (auto closed = log_.close(*simulation_, n_); !closed) return tl::unexpected(closed.error());
     fill(result, end == End::wall_clock ? "wall_clock" : end == End::step_budget ? "step_budget" : "horizon");
     return result;
   }
@@ -178,6 +178,25 @@ class Run {
 
 }  // namespace
 
-Result<RunResult> solve(const Scene& scene, const RunControl& control) { return Run(scene, control).go(); }
+Result<RunResult> solve(const Scene& scene, const RunControl& control) {
+  const int halvings = scene.phase_field.step_control == StepControl::adaptive ? step_halvings : 0;
+  SystemClock clock;
+  const double start_s = clock.monotonic_s(), start_cpu_s = thread_cpu_s();
+  RunControl trial = control;
+  std::vector<std::string> notes;
+  for (;;) {
+    const double before_s = clock.monotonic_s() - start_s, before_cpu_s = thread_cpu_s() - start_cpu_s;
+    trial.wall_budget_s = control.wall_budget_s - before_s;
+    Result<RunResult> result = Run(scene, trial).go();
+    if (result) {
+      result->cpu_s += before_cpu_s, result->wall_s += before_s;
+      result->notes = std::move(notes);
+      return result;
+    }
+    if (result.error().fault != Fault::solver_numeric || std::ssize(notes) == halvings) return result;
+    notes.push_back(fmt::format("begun again with half the step after: {}", result.error().message));
+    trial.step_scale *= 0.5;
+  }
+}
 
 }  // namespace fracfarm

@@ -48,7 +48,11 @@ struct RunResult {
   double cpu_s = 0.0, wall_s = 0.0;
   std::map<std::string, double> stages;  // seconds by stage
   std::string kernel;                    // ISA path and precision
+  std::vector<std::string> notes;        // what happened on the way: trials of an adaptive run that ended SOLVER_NUMERIC
 };
+
+// A scene with phase_field.step "adaptive" is begun again with half the step where it ends SOLVER_NUMERIC, at most step_halvings times.
+inline constexpr int step_halvings = 4;
 
 // Errors: SOLVER_NUMERIC with evidence (step, time, what was not finite or did not close), NODE_LOST where the checkpoint cannot be
 // written.

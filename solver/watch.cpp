@@ -61,7 +61,7 @@ void FailureWatch::at_row(const Simulation& simulation, double mean_stress) {
   if (mean_stress > peak_) {
     peak_ = mean_stress;
     psi_dropped_.clear();
-  } else if (psi_dropped_.empty() && mean_stress < stress_drop_fraction * peak_) {
+  } else if (drops_at(mean_stress)) {
     psi_dropped_ = damage_field(simulation);
   }
 }

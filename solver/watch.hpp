@@ -1,4 +1,4 @@
-// The failure watch of a run: through cracks after every step, the candidate of the stress drop at every row, and the fields at both times.
+// The failure watch of a run: through cracks and the candidate of the stress drop after every step, and the fields at both times.
 #pragma once
 
 #include <optional>
@@ -21,6 +21,9 @@ class FailureWatch {
   void after_step(const Simulation& simulation, double time);
   // At a row of the series: keeps the field of the first row below a tenth of the largest row so far, and drops it when a larger row comes.
   void at_row(const Simulation& simulation, double mean_stress);
+
+  // True where this mean stress would be the first below a tenth of the largest row: its step must be a row.
+  bool drops_at(double mean_stress) const { return peak_ > 0.0 && psi_dropped_.empty() && mean_stress < stress_drop_fraction * peak_; }
 
   const std::optional<double>& through_crack() const { return through_crack_; }  // s
   const std::vector<float>& psi_through() const { return psi_through_; }

@@ -148,7 +148,15 @@ double energy_scale(const Series& series) {
 
 double share(double part, double whole) { return part == 0.0 ? 0.0 : whole > 0.0 ? part / whole : infinity; }
 
-double open_ledger(const Context& c) { return share(largest(c.record.series, "energy_residual"), energy_scale(c.record.series)); }
+double open_ledger(const Context& c) {
+  const Series& s = c.record.series;
+  const auto time = s["step_time"], residual = s["energy_residual"];
+  const Column* dt = s.find("dt");
+  double worst = 0.0;
+  for (std::size_t row = 0; row < s.rows(); ++row)
+    worst = std::max(worst, std::abs(residual[row]) * (dt ? ledger_weight(time[row] / dt->values[row]) : 1.0));
+  return share(worst, energy_scale(s));
+}
 
 // The stored energy_residual is measured by the external work alone, and 0 where there was none.
 double residual_difference(const Context& c) {
@@ -172,12 +180,15 @@ double wrong_ledger(const Context& c) {
   return share(high - low, energy_scale(s));
 }
 
-// How far the stored peak lies from the series' own, which is sampled: at or above it, and not far.
+// How far the stored peak lies from the series' own, which is sampled: at or above it, and not farther than the stress ever moves from row
+// to row.
 double peak_difference(const Context& c) {
   const auto stress = c.record.series["stress_zz"];
   const double seen = std::max(0.0, *std::max_element(stress.begin(), stress.end()));
   if (seen > c.record.peak_stress * (1.0 + 1e-12)) return infinity;
-  return share(c.record.peak_stress - seen, c.record.peak_stress);
+  double jump = 0.0;
+  for (std::size_t row = 1; row < stress.size(); ++row) jump = std::max(jump, std::abs(stress[row] - stress[row - 1]));
+  return share(std::max(0.0, c.record.peak_stress - seen - jump), c.record.peak_stress);
 }
 
 const FailureTime* candidate(const Record& record, std::string_view rule) {
@@ -256,7 +267,8 @@ constexpr auto rules = std::to_array<Rule>({
     {"scene", "identity fields that differ from the canonical scene", 0.0, scene_differences},
     {"key", "1 where the key is not the digest of scene and build", 0.0, wrong_key},
     {"ledger_sum", "largest error of the energy ledger's sum over the largest work or energy", 1e-9, wrong_ledger},
-    {"energy_closed", "largest energy residual over the largest work or energy", energy_residual_limit, open_ledger},
+    {"energy_closed", "largest energy residual over the largest work or energy, the first steps weighed less", energy_residual_limit,
+     open_ledger},
     {"energy_residual", "difference of the stored energy residual from the series' own", 1e-12, residual_difference},
     {"peak_stress", "relative distance of the stored peak from the series' own", 0.1, peak_difference},
     {"stress_drop", "seconds to the stress drop of the series", 0.0, drop_difference},

@@ -45,6 +45,12 @@ std::string warnings_text(const Scene& scene) {
   return text.empty() ? "none" : text;
 }
 
+std::string notes_text(const RunResult& result) {
+  std::string text;
+  for (const std::string& note : result.notes) text += (text.empty() ? "" : "; ") + note;
+  return text.empty() ? "none" : text;
+}
+
 std::string stages_text(const RunResult& result) {
   std::string text;
   for (const auto& [stage, seconds] : result.stages) text += (text.empty() ? "" : " ") + stage + "=" + shortest(seconds);
@@ -71,6 +77,7 @@ std::map<std::string, std::string> provenance_of(const Scene& scene, const RunRe
       {"dt", shortest(result.dt)},
       {"stages_s", stages_text(result)},
       {"warnings", warnings_text(scene)},
+      {"notes", notes_text(result)},
       {"written", utc_text(SystemClock{}.wall_s())},
   };
   for (auto& [name, text] : entries) text = printable(text);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solver/simulation.hpp"
 #include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
@@ -63,6 +64,44 @@ TEST_CASE("a step past the stability edge ends with evidence, never with a numbe
   CHECK(result.error().message.find("dt ") != std::string::npos);
 }
 
+TEST_CASE("an adaptive run past the stability edge begins again with half the step, and says so") {
+  Scene scene = pulled("aluminum", 40);
+  scene.horizon = 4e-5;
+  scene.phase_field.plasticity = PlasticityModel::none;
+  scene.layers[0].material.Gc = 1e12;
+  scene.phase_field.cfl = 1.1;
+  CHECK_FALSE(solve(scene, {}));
+  Scene slower = scene;
+  slower.phase_field.cfl = 0.55;
+  scene.phase_field.step_control = StepControl::adaptive;
+  const RunResult result = run(scene), half = run(slower);
+  CHECK(result.dt == Approx(half.dt).epsilon(1e-12));
+  CHECK(result.steps == half.steps);
+  REQUIRE(result.notes.size() == 1);
+  CHECK(result.notes[0].find("at step ") != std::string::npos);
+  CHECK(half.notes.empty());
+}
+
+TEST_CASE("the stress drop is found at its step, not at the next fourth one") {
+  Scene scene = square("pbx", 20);
+  scene.initial.strain = {0.0, 1e-3, 0.0};
+  scene.phase_field.dt = 4e-7;
+  scene.horizon = 6e-5;
+  const auto simulation = make_phase_field(scene);
+  REQUIRE(simulation->start(4e-7));
+  const double peak = simulation->mean_stress_zz();  // it is let go at its largest
+  long long n = 0;
+  while (simulation->mean_stress_zz() >= 0.1 * peak) REQUIRE(simulation->step(n++, 4e-7));
+  REQUIRE(n % 4 != 0);
+  CHECK(*run(scene).judgement.time_to_failure == static_cast<double>(n) * 4e-7);
+}
+
+TEST_CASE("a horizon shorter than a step is one step") {
+  Scene scene = pulled("pbx", 8);
+  scene.horizon = 1e-20;
+  CHECK(run(scene).steps == 1);
+}
+
 TEST_CASE("half the step scale is half the step") {
   Scene scene = square("pbx", 12);
   RunControl control;
@@ -97,7 +136,7 @@ TEST_CASE("a plate that loses its stress without a through crack fails by the st
   Scene scene = square("pbx", 20);
   scene.initial.strain = {0.0, 1e-3, 0.0};
   scene.phase_field.dt = 4e-7;
-  scene.frame_interval = 4 * 4e-7;  // a frame at every row
+  scene.frame_interval = 4e-7;  // a frame at every step
   scene.horizon = 6e-5;
   const RunResult result = run(scene);
   REQUIRE(result.judgement.verdict == Verdict::failed);
@@ -163,9 +202,18 @@ TEST_CASE("turning a scene of an isotropic plate by a right angle turns its resu
   set_load(lying, Side::right, pull(2.0, lying.height));
   const RunResult a = run(upright), b = run(lying);
   CHECK(a.dt == b.dt);
-  const auto up = a.series["stress_zz"], side = b.series["stress_xx"];
-  REQUIRE(up.size() == side.size());
-  for (std::size_t r = 0; r < up.size(); ++r) CHECK(up[r] == Approx(side[r]).epsilon(1e-9));
+  // The lying plate's vertical stress, which is not its load's, may have dropped: one row more.
+  const auto up = a.series["stress_zz"], side = b.series["stress_xx"], time = a.series["step_time"], other = b.series["step_time"];
+  std::size_t compared = 0;
+  for (std::size_t r = 0, s = 0; r < up.size() && s < side.size();) {
+    if (time[r] == other[s]) {
+      CHECK(up[r] == Approx(side[s]).epsilon(1e-9));
+      ++compared, ++r, ++s;
+    } else {
+      time[r] < other[s] ? ++r : ++s;
+    }
+  }
+  CHECK(compared + 2 >= up.size());
 }
 
 TEST_CASE("the failure watch looks across the load") {
