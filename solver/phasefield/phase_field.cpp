@@ -122,11 +122,3 @@ std::map<std::string, double> PhaseField::stage_seconds() const {
 std::string PhaseField::kernel() const { return std::string(kernels_.isa) + "/double"; }
 
 }  // namespace fracfarm::phasefield
-
-namespace fracfarm {
-
-std::unique_ptr<Simulation> make_phase_field(const Scene& scene) {
-  return std::make_unique<phasefield::PhaseField>(scene, phasefield::chosen_kernels());
-}
-
-}  // namespace fracfarm

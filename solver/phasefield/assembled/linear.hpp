@@ -31,22 +31,26 @@ class SymmetricMatrix {
   int per_element_ = 0;
 };
 
-// Conjugate gradients with the factor of an earlier matrix; a new factor when they take too long.
+// Conjugate gradients with the factor of an earlier matrix; a new factor as soon as the old one costs more than it saves.
 class FactoredSolver {
  public:
   // To |b - A x| <= limit. Errors: SOLVER_NUMERIC where A is not positive definite.
   Result<Eigen::VectorXd> solve(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& b, double limit);
 
-  // What a restart needs to give the same bits: the values of the matrix that was factored.
-  void save(ArchiveWriter& archive) const { archive.put_array(factored_); }
+  // What a restart needs to give the same bits: the values of the matrix that was factored, and how often the factor served.
+  void save(ArchiveWriter& archive) const;
   bool load(ArchiveReader& archive, const Eigen::SparseMatrix<double>& pattern);
+
+  using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>;
 
  private:
   bool factor(const Eigen::SparseMatrix<double>& lower);
+  bool is_worn(long long iterations) const;
 
-  using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>;
   std::unique_ptr<Factor> factor_;
-  std::vector<double> factored_;  // empty: no factor
+  std::vector<double> factored_;           // empty: no factor
+  double price_ = 0.0;                     // of the factorisation, in iterations
+  long long solves_ = 0, iterations_ = 0;  // with this factor
 };
 
 }  // namespace fracfarm::phasefield::assembled

@@ -25,16 +25,17 @@ class NewtonSolve {
 
   Result<void> go() {
     evaluate(state_.u);
+    const double enough = balance_.reduction * residual_.norm();
     double last = INFINITY;
     for (int k = 0; k < newton_limit; ++k) {
       const double size = residual_.norm(), scale = std::max(scratch_.force_scale, remembered_force * state_.largest_force);
       if (!std::isfinite(size)) return fail(Fault::solver_numeric, "the residual of the displacements is not finite");
-      if (size <= balance_.tolerance * scale || (size > 0.5 * last && size <= stalled * scale)) return {};
+      const double limit = std::max(balance_.tolerance * scale, enough);
+      if (size <= limit || (size > 0.5 * last && size <= stalled * scale)) return {};
       last = size;
       assemble_stiffness(model_, state_, state_.u, balance_.inertia, scratch_);
-      const double wanted = 0.1 * balance_.tolerance * scale;
       auto direction = scratch_.displacement_solver.solve(scratch_.stiffness.lower(), residual_,
-                                                          model_.linear ? wanted : std::max(wanted, loose * size));
+                                                          std::max(0.5 * limit, model_.linear ? 0.0 : loose * size));
       if (!direction) return tl::unexpected(direction.error());
       advance(*direction);
     }

@@ -11,6 +11,7 @@ struct Balance {
   double inertia = 0.0;               // 1/s^2; 0: static
   const Vector* predictor = nullptr;  // where inertia > 0
   double tolerance = 0.0;             // of the residual over the elements' own forces
+  double reduction = 0.0;             // or of the residual over that at the start, where that is enough
 };
 
 // Newton's method with a line search from state.u, whose told values stay. Leaves scratch.now and the force at the new state.u.

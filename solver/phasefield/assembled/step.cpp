@@ -12,6 +12,7 @@ namespace {
 // finer than what the damage changes.
 constexpr double newmark_tolerance = 1e-13;
 constexpr double quasi_static_tolerance = 1e-8;
+constexpr double quasi_static_reduction = 1e-3;  // in later passes
 
 Eigen::Index displacement_of(const Motion& motion, std::size_t node) {
   return static_cast<Eigen::Index>(2 * node + (motion.axis == Axis::z));
@@ -105,9 +106,10 @@ Result<void> explicit_step(const Model& model, State& state, Scratch& scratch, d
 }
 
 // Displacement and damage in turns until psi settles. An increment that did not settle in the passes that it has goes on in the next one.
-Result<void> staggered_passes(const Model& model, const Balance& balance, State& state, Scratch& scratch) {
+Result<void> staggered_passes(const Model& model, Balance balance, State& state, Scratch& scratch) {
   state.psi_previous = state.psi;
   for (int pass = 0; pass < model.settings.staggered_passes; ++pass) {
+    balance.reduction = balance.inertia == 0.0 && pass > 0 ? quasi_static_reduction : 0.0;
     ++state.passes;
     if (auto solved = solve_displacement(model, balance, state, scratch); !solved) return solved;
     scratch.clock.end(Stage::move);
