@@ -54,7 +54,8 @@ std::vector<Row> dispersion();           // PF-5
 std::vector<Row> stability_edge();       // PF-6
 std::vector<Row> energy_conservation();  // PF-7
 std::vector<Row> impedance();            // PF-8
-std::vector<Row> rotation(Desk&);        // PF-9
+std::vector<Row> rotation_of_laws(Desk&);  // PF-9
+std::vector<Row> rotation(Desk&);
 std::vector<Row> closure(Desk&);         // PF-10
 std::vector<Row> convergence(Desk&);     // PF-11
 std::vector<Row> hardening_curve();      // PF-12

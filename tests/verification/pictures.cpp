@@ -6,7 +6,7 @@
 namespace fracfarm::verification {
 namespace {
 
-constexpr int chart_width = 560, chart_height = 360, margin = 20, head = 40, caption_room = 24, scale_room = 56;
+constexpr int chart_width = 560, chart_height = 340, title_room = 26, margin = 20, head = 40, caption_room = 24, scale_room = 56;
 
 int pixels(double part, double whole, int longest) { return std::max(24, static_cast<int>(std::lround(longest * part / whole))); }
 
@@ -14,12 +14,13 @@ int pixels(double part, double whole, int longest) { return std::max(24, static_
 
 picture::Canvas chart_page(const std::vector<Chart>& charts) {
   const int count = static_cast<int>(charts.size());
-  picture::Canvas page(count * chart_width + (count + 1) * margin, chart_height + 2 * margin);
+  picture::Canvas page(count * chart_width + (count + 1) * margin, title_room + chart_height + 2 * margin);
   int x = margin;
   for (const Chart& chart : charts) {
-    picture::Plot plot{chart.title, chart.x, chart.y, {}, chart.marks};
+    picture::Plot plot{"", chart.x, chart.y, {}, chart.marks};
     for (const Line& line : chart.lines) plot.curves.push_back({line.name, line.colour, line.x, line.y});
-    picture::draw_plot(page, {x, margin, chart_width, chart_height}, plot);
+    page.text(x, margin + 14, chart.title, picture::black, picture::Align::left, picture::Font::bold);
+    picture::draw_plot(page, {x, margin + title_room, chart_width, chart_height}, plot);
     x += chart_width + margin;
   }
   return page;

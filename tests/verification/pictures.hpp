@@ -25,7 +25,7 @@ struct Chart {
   std::vector<picture::Mark> marks = {};
 };
 
-// Side by side, each 560 x 360.
+// Side by side, each 560 pixels wide.
 picture::Canvas chart_page(const std::vector<Chart>& charts);
 
 // Damage at one instant: nodes in rows from the bottom, over a sample of the given size (m).

@@ -14,5 +14,9 @@ inline constexpr std::string_view convergence_set_up =
 inline constexpr std::string_view straight_crack_set_up = "";
 inline constexpr std::string_view inclined_crack_set_up = "";
 inline constexpr std::string_view two_flaws_set_up = "";
+inline constexpr std::string_view rotation_set_up = "";
+inline constexpr std::string_view closure_set_up = "";
+inline constexpr std::string_view surfing_set_up = "";
+inline constexpr std::string_view branching_set_up = "";
 
 }  // namespace fracfarm::verification
