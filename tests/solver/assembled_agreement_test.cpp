@@ -1,0 +1,88 @@
+// The assembled path against the row kernels: two programs for the same equations, explicit with corner quadrature.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/phasefield/assembled/assembled.hpp"
+#include "tests/solver/scenes.hpp"
+
+using namespace fracfarm;
+using namespace fracfarm::test;
+using phasefield::assembled::Assembled;
+
+namespace {
+
+// The rows' psi solve ends at 1e-8; the comparison is as fine as that allows.
+constexpr double same_psi = 1e-6, same_share = 1e-6;
+
+struct Ended {
+  SampleRow row;
+  std::vector<double> psi;
+  double stress;
+};
+
+Ended after_steps(Simulation& run, double dt, int steps) {
+  REQUIRE(run.start(dt));
+  for (int n = 0; n < steps; ++n) REQUIRE(run.step(n, dt));
+  Ended ended{run.sample(steps, dt), {}, run.mean_stress_zz()};
+  run.copy_damage(ended.psi);
+  return ended;
+}
+
+bool near(double a, double b, double scale) { return std::abs(a - b) <= same_share * std::abs(scale); }
+
+void check_agreement(const Scene& scene, int steps, double least_damage) {
+  const auto rows = make_phase_field(scene);
+  Assembled assembled(scene);
+  REQUIRE(rows->kernel() != assembled.kernel());
+  CHECK(rows->stable_dt() == Approx(assembled.stable_dt()).epsilon(1e-14));
+  CHECK(rows->mask() == assembled.mask());
+  const double dt = 0.9 * rows->stable_dt();
+  const Ended a = after_steps(*rows, dt, steps), b = after_steps(assembled, dt, steps);
+  double worst = 0.0, most = 0.0;
+  const std::vector<unsigned char> mask = rows->mask();
+  for (std::size_t n = 0; n < a.psi.size(); ++n) {
+    worst = std::max(worst, std::abs(a.psi[n] - b.psi[n]));
+    if (!mask[n]) most = std::max(most, a.psi[n]);
+  }
+  CHECK(most > least_damage);  // something was to be agreed on
+  CHECK(worst < same_psi);
+  const double work = a.row.external_work;
+  CHECK(work > 0.0);
+  CHECK(near(a.stress, b.stress, a.stress));
+  CHECK(near(a.row.stress_xx, b.row.stress_xx, a.stress));
+  for (std::size_t side = 0; side < 4; ++side) CHECK(near(a.row.reaction[side], b.row.reaction[side], a.stress));
+  CHECK(near(a.row.kinetic_energy, b.row.kinetic_energy, work));
+  CHECK(near(a.row.elastic_energy, b.row.elastic_energy, work));
+  CHECK(near(a.row.external_work, b.row.external_work, work));
+  CHECK(near(a.row.surface_energy, b.row.surface_energy, a.row.surface_energy));
+  CHECK(near(a.row.crack_length, b.row.crack_length, a.row.crack_length));
+  CHECK(std::abs(a.row.released_energy - b.row.released_energy) < 2e-3 * work);  // another mean over the step
+  CHECK(std::abs(b.row.energy_residual) <= std::abs(a.row.energy_residual) + 1e-6 * work);
+}
+
+}  // namespace
+
+TEST_CASE("assembled and row kernels agree on a breaking plate of an anisotropic material") {
+  check_agreement(cracked("shale", 24), 220, 0.9);
+}
+
+TEST_CASE("assembled and row kernels agree where the secant law yields") { check_agreement(cracked("steel", 20), 250, 0.01); }
+
+TEST_CASE("assembled and row kernels agree on layers, oblong cells, tractions, ramps and initial motion") {
+  Scene scene = square("pbx", 20);
+  scene.width *= 1.5;
+  scene.layers = {{0.4 * scene.height, *find_material("shale")}, {scene.height, *find_material("pbx")}};
+  scene.phase_field.length_scale.kind = LengthScale::Kind::full;
+  scene.cracks = {{0.3 * scene.width, 0.1 * scene.height, 0.6 * scene.width, 0.7 * scene.height}};
+  SideLoad up = pull(4.0, scene.width), part;
+  up.ramp = 1e-5, up.tangential = Tangential::velocity, up.tangential_velocity = 1.0;
+  part.from = 0.1 * scene.height, part.to = 0.8 * scene.height, part.traction = {-2e6, 1e6};
+  set_load(scene, Side::top, up);
+  set_load(scene, Side::bottom, pull(0.0, scene.width));
+  set_load(scene, Side::left, part);
+  scene.initial.velocity_gradient = {20.0, 0.0, 5.0, 40.0};
+  scene.initial.strain = {1e-5, 2e-5, -1e-5};
+  check_agreement(scene, 120, 0.5);
+}
