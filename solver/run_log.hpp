@@ -36,6 +36,7 @@ class RunLog {
 
   double dt_;
   double frame_interval_;
+  bool keeps_ledger_;  // an unstable quasi-static jump sheds energy that no inertia takes up
   FailureWatch watch_;
   Series series_ = empty_series();
   std::vector<Frame> frames_;

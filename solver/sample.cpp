@@ -14,7 +14,7 @@ double reaction(const SampleRow& s) {
 }
 
 // total_stress, which the five-step pick reads, is the trace of the mean stress: it falls for cracks of any direction.
-constexpr std::array<SeriesColumn, 17> table{{
+constexpr std::array<SeriesColumn, 18> table{{
     {"step_time", [](const SampleRow& s) { return s.step_time; }},
     {"stress_zz", [](const SampleRow& s) { return s.stress_zz; }},
     {"stress_xx", [](const SampleRow& s) { return s.stress_xx; }},
@@ -26,6 +26,7 @@ constexpr std::array<SeriesColumn, 17> table{{
     {"kinetic_energy", [](const SampleRow& s) { return s.kinetic_energy; }},
     {"elastic_energy", [](const SampleRow& s) { return s.elastic_energy; }},
     {"released_energy", [](const SampleRow& s) { return s.released_energy; }},
+    {"plastic_energy", [](const SampleRow& s) { return s.plastic_energy; }},
     {"surface_energy", [](const SampleRow& s) { return s.surface_energy; }},
     {"external_work", [](const SampleRow& s) { return s.external_work; }},
     {"energy_residual", [](const SampleRow& s) { return s.energy_residual; }},
@@ -44,7 +45,7 @@ std::string unit_of(std::string_view name) {
 }  // namespace
 
 double energy_residual(const SampleRow& now, double initial_energy) {
-  return now.kinetic_energy + now.elastic_energy + now.released_energy - initial_energy - now.external_work;
+  return now.kinetic_energy + now.elastic_energy + now.released_energy + now.plastic_energy - initial_energy - now.external_work;
 }
 
 std::span<const SeriesColumn> series_columns() { return table; }

@@ -63,6 +63,7 @@ SampleRow Assembled::sample(long long n, double dt) const {
   s.kinetic_energy = kinetic_energy(dt);
   s.elastic_energy = elastic_energy(model_, scratch_);
   s.released_energy = state_.released;
+  s.plastic_energy = state_.plastic_work;
   s.surface_energy = crack.energy - state_.initial_surface;
   s.external_work = state_.external_work;
   s.energy_residual = energy_residual(s, state_.initial_energy);

@@ -37,6 +37,7 @@ class Assembled final : public Simulation {
   const Model& model() const { return model_; }
   State& state() { return state_; }
   const State& state() const { return state_; }
+  Scratch& scratch() { return scratch_; }
   const Scratch& scratch() const { return scratch_; }
   // Force that holds a told displacement in its place, N/m along +axis.
   double reaction(int column, int row, Axis axis) const { return -scratch_.force[2 * model_.node(column, row) + (axis == Axis::z)]; }

@@ -33,7 +33,7 @@ class NewtonSolve {
       const double limit = std::max(balance_.tolerance * scale, enough);
       if (size <= limit || (size > 0.5 * last && size <= stalled * scale)) return {};
       last = size;
-      assemble_stiffness(model_, state_, state_.u, balance_.inertia, scratch_);
+      assemble();
       auto direction = scratch_.displacement_solver.solve(scratch_.stiffness.lower(), residual_,
                                                           std::max(0.5 * limit, model_.linear ? 0.0 : loose * size));
       if (!direction) return tl::unexpected(direction.error());
@@ -44,6 +44,15 @@ class NewtonSolve {
   }
 
  private:
+  // Of linear laws the stiffness follows from g and the inertia.
+  void assemble() {
+    if (model_.linear && scratch_.stiffness_inertia == balance_.inertia && scratch_.stiffness_g == scratch_.g) return;
+    assemble_stiffness(model_, state_, state_.u, balance_.inertia, scratch_);
+    if (!model_.linear) return;
+    scratch_.stiffness_g = scratch_.g;
+    scratch_.stiffness_inertia = balance_.inertia;
+  }
+
   void evaluate(const Vector& u) {
     respond(model_, state_, u, Flow::on, scratch_);
     compute_force(model_, balance_.time, scratch_);

@@ -43,6 +43,8 @@ struct Scratch {
   StressSum stress;                   // with force
   SymmetricMatrix stiffness, damage;  // pattern and values
   Vector damage_source;
+  std::vector<double> stiffness_g;  // g and inertia that the stiffness was assembled with, where that is all it depends on
+  double stiffness_inertia = 0.0;
   FactoredSolver displacement_solver;
   StageClock<Stage, stage_names.size()> clock{};
 };
