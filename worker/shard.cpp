@@ -106,7 +106,7 @@ Result<void> ShardWriter::append(const std::string& name, std::string_view bytes
   if (!write_all(fd_, bytes, data) || !write_all(fd_, padding, data + bytes.size()) ||
       !write_all(fd_, {header.data(), header.size()}, end_))
     return system_error("append to", path_);
-  pending_.push_back({path_.filename().string(), data, bytes.size(), sha256_hex(bytes)});
+  pending_.push_back({{path_.filename().string(), data, bytes.size(), sha256_hex(bytes)}, xxh3_hex(bytes)});
   end_ = data + padded(bytes.size());
   ++entries_;
   return {};
@@ -119,10 +119,11 @@ Result<void> ShardWriter::sync() {
   return {};
 }
 
-Result<void> ShardWriter::read_back(const Placed& placed) const {
+Result<void> ShardWriter::read_back(const Pending& pending) const {
+  const Placed& placed = pending.placed;
   const auto bytes = read_entry(path_, placed.offset, placed.length);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (sha256_hex(*bytes) == placed.sha256) return {};
+  if (xxh3_hex(*bytes) == pending.xxh3) return {};
   return fail(Fault::output_bad, fmt::format("{} bytes at {} of {} read back differently after they were synced", placed.length,
                                              placed.offset, path_.string()));
 }
@@ -133,10 +134,10 @@ std::vector<Result<Placed>> ShardWriter::commit() {
   const auto synced = sync();
   if (synced && options_.after_sync) options_.after_sync(path_);
   bool sound = synced.has_value();
-  for (Placed& placed : std::exchange(pending_, {})) {
-    const auto same = synced ? read_back(placed) : synced;
+  for (Pending& pending : std::exchange(pending_, {})) {
+    const auto same = synced ? read_back(pending) : synced;
     sound = sound && same;
-    results.push_back(same ? Result<Placed>(std::move(placed)) : tl::unexpected(same.error()));
+    results.push_back(same ? Result<Placed>(std::move(pending.placed)) : tl::unexpected(same.error()));
   }
   if (!sound) leave();  // a failed sync says nothing true about later ones
   return results;

@@ -12,6 +12,8 @@
 #include <memory>
 #include <vector>
 
+#include "common/record/vector_paths.hpp"
+
 namespace fracfarm {
 namespace {
 
@@ -22,20 +24,18 @@ constexpr std::size_t block = 1024;  // elements that are shuffled while they li
 
 // Byte k of every element, then byte k + 1: H5Zshuffle. Word is the element.
 template <class Word>
-void shuffle(std::string_view raw, char* out) {
-  const std::size_t count = raw.size() / sizeof(Word);
+[[gnu::always_inline]] inline void shuffle_words(const char* raw, std::size_t count, char* out) {
   Word words[block];
   for (std::size_t first = 0; first < count; first += block) {
     const std::size_t many = std::min(block, count - first);
-    std::memcpy(words, raw.data() + first * sizeof(Word), many * sizeof(Word));
+    std::memcpy(words, raw + first * sizeof(Word), many * sizeof(Word));
     for (std::size_t k = 0; k < sizeof(Word); ++k)
       for (std::size_t i = 0; i < many; ++i) out[k * count + first + i] = static_cast<char>(words[i] >> (8 * k) & 0xff);
   }
 }
 
 template <class Word>
-void unshuffle(const char* shuffled, std::span<char> raw) {
-  const std::size_t count = raw.size() / sizeof(Word);
+[[gnu::always_inline]] inline void unshuffle_words(const char* shuffled, std::size_t count, char* raw) {
   Word words[block];
   for (std::size_t first = 0; first < count; first += block) {
     const std::size_t many = std::min(block, count - first);
@@ -45,8 +45,18 @@ void unshuffle(const char* shuffled, std::span<char> raw) {
       for (std::size_t k = 0; k < sizeof(Word); ++k) word |= static_cast<Word>(static_cast<unsigned char>(from[k * count + i])) << (8 * k);
       words[i] = word;
     }
-    std::memcpy(raw.data() + first * sizeof(Word), words, many * sizeof(Word));
+    std::memcpy(raw + first * sizeof(Word), words, many * sizeof(Word));
   }
+}
+
+FRACFARM_VECTOR_PATHS void shuffle(const char* raw, std::size_t bytes, std::size_t element_size, char* out) {
+  if (element_size == 4) shuffle_words<std::uint32_t>(raw, bytes / 4, out);
+  if (element_size == 8) shuffle_words<std::uint64_t>(raw, bytes / 8, out);
+}
+
+FRACFARM_VECTOR_PATHS void unshuffle(const char* shuffled, std::size_t bytes, std::size_t element_size, char* raw) {
+  if (element_size == 4) unshuffle_words<std::uint32_t>(shuffled, bytes / 4, raw);
+  if (element_size == 8) unshuffle_words<std::uint64_t>(shuffled, bytes / 8, raw);
 }
 
 // Memory of this thread that is kept from chunk to chunk: a chunk has a quarter of a megabyte.
@@ -128,8 +138,7 @@ std::string_view encode_chunk(std::string_view raw, std::size_t element_size) {
   std::string_view input = raw;
   if (element_size > 1) {
     char* shuffled = kept_shuffled.at_least(raw.size());
-    if (element_size == 4) shuffle<std::uint32_t>(raw, shuffled);
-    if (element_size == 8) shuffle<std::uint64_t>(raw, shuffled);
+    shuffle(raw.data(), raw.size(), element_size, shuffled);
     input = {shuffled, raw.size()};
   }
   char* stored = kept_stored.at_least(zlib_bound(input.size()) + checksum_size);
@@ -148,8 +157,7 @@ std::string_view decode_chunk(std::string_view stored, std::size_t element_size,
   // With no place for the actual size, libdeflate demands exactly the size that is expected.
   if (libdeflate_zlib_decompress(decompressor(), packed.data(), packed.size(), output, raw.size(), nullptr) != LIBDEFLATE_SUCCESS)
     return "does not inflate to the size of a chunk";
-  if (element_size == 4) unshuffle<std::uint32_t>(output, raw);
-  if (element_size == 8) unshuffle<std::uint64_t>(output, raw);
+  if (element_size > 1) unshuffle(output, raw.size(), element_size, raw.data());
   return {};
 }
 

@@ -1,23 +1,35 @@
 #include "common/record/damage_sweeps.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cstdint>
+
+#include "common/record/vector_paths.hpp"
 
 namespace fracfarm {
 namespace {
 
 constexpr std::uint32_t one_bits = 0x3f800000, exponent_bits = 0x7f800000;
 
+// Floats of [0, 1] are ordered as their bits are, and every other one but -0 has larger bits.
+FRACFARM_VECTOR_PATHS std::uint32_t has_larger_bits(const float* psi, std::size_t count) {
+  std::uint32_t larger = 0;
+  for (std::size_t i = 0; i < count; ++i) larger |= std::bit_cast<std::uint32_t>(psi[i]) > one_bits ? 1u : 0u;
+  return larger;
+}
+
+FRACFARM_VECTOR_PATHS std::uint32_t drops(const float* before, const float* after, std::size_t count) {
+  std::uint32_t lower = 0;
+  for (std::size_t i = 0; i < count; ++i) lower |= before[i] > after[i] ? 1u : 0u;
+  return lower;
+}
+
 }  // namespace
 
-// Floats of [0, 1] are ordered as their bits are, and every other one but -0 has larger bits.
 bool in_unit_range(std::span<const float> psi) {
-  std::uint32_t outside = 0;
-  for (float value : psi) outside |= std::bit_cast<std::uint32_t>(value) > one_bits ? 1u : 0u;
-  return !outside || std::all_of(psi.begin(), psi.end(), [](float value) { return value >= 0.0f && value <= 1.0f; });
+  return !has_larger_bits(psi.data(), psi.size()) ||
+         std::all_of(psi.begin(), psi.end(), [](float value) { return value >= 0.0f && value <= 1.0f; });
 }
 
 std::size_t count_not_finite(std::span<const float> psi) {
@@ -33,19 +45,14 @@ float excursion(std::span<const float> psi) {
   return worst;
 }
 
-// Sixteen maxima side by side: one alone would wait for itself.
+// Most frames drop nowhere; how far costs more to find than whether.
 float largest_drop(std::span<const float> before, std::span<const float> after) {
   assert(before.size() == after.size());
-  constexpr std::size_t lanes = 16;
-  std::array<float, lanes> worst{};
-  const std::size_t whole = before.size() / lanes * lanes;
-  for (std::size_t i = 0; i < whole; i += lanes)
-    for (std::size_t k = 0; k < lanes; ++k) {
-      const float drop = before[i + k] - after[i + k];
-      worst[k] = drop > worst[k] ? drop : worst[k];
-    }
-  for (std::size_t i = whole; i < before.size(); ++i) worst[0] = std::max(worst[0], before[i] - after[i]);
-  return *std::max_element(worst.begin(), worst.end());
+  float worst = 0.0f;
+  if (!drops(before.data(), after.data(), before.size())) return worst;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (before[i] > after[i]) worst = std::max(worst, before[i] - after[i]);
+  return worst;
 }
 
 }  // namespace fracfarm

@@ -1,13 +1,21 @@
 #include "common/record/rounding.hpp"
 
-namespace fracfarm {
+#include "common/record/vector_paths.hpp"
 
-void round_damage(std::span<float> values) {
-  constexpr float coarse = 1 << (23 - psi_fraction_bits);  // floats from here to its double lie 2^-psi_fraction_bits apart
-  for (float& value : values) {
-    const float rounded = (value + coarse) - coarse;
-    value = value >= 0.0f && value <= 1.0f ? rounded : value;
+namespace fracfarm {
+namespace {
+
+constexpr float coarse = 1 << (23 - psi_fraction_bits);  // floats from here to its double lie 2^-psi_fraction_bits apart
+
+FRACFARM_VECTOR_PATHS void round_each(float* values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = values[i], rounded = (value + coarse) - coarse;
+    values[i] = value >= 0.0f && value <= 1.0f ? rounded : value;
   }
 }
+
+}  // namespace
+
+void round_damage(std::span<float> values) { round_each(values.data(), values.size()); }
 
 }  // namespace fracfarm

@@ -1,6 +1,5 @@
 #include "solver/program/serve.hpp"
 
-#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
+#include "common/base/kept_memory.hpp"
 #include "common/scene/parse.hpp"
 #include "solver/program/run_task.hpp"
 #include "solver/program/signals.hpp"
@@ -64,13 +64,6 @@ bool say(const Report& report) {
     line.remove_prefix(static_cast<std::size_t>(wrote));
   }
   return true;
-}
-
-// Every run needs the same tens of megabytes as the one before it; fresh pages would cost a fault each. More than a run of the usual size
-// needs goes back to the system.
-void keep_freed_memory() {
-  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  ::mallopt(M_TRIM_THRESHOLD, 128 << 20);
 }
 
 Report fault_report(const std::string& key, Error error) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// 37 values: whole rows of lanes and a rest.
+// 37 values: whole vectors and a rest.
 std::vector<float> ramp() {
   std::vector<float> psi;
   for (int i = 0; i < 37; ++i) psi.push_back(static_cast<float>(i) / 36.0f);

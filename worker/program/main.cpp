@@ -9,6 +9,7 @@
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
+#include "common/base/kept_memory.hpp"
 #include "worker/daemon.hpp"
 
 namespace {
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "error: no farm at {}; name its folder with --farm, or start a coordinator there first\n", options.farm.string());
     return exit_bad_input;
   }
+  keep_freed_memory();
   options.farm = std::filesystem::absolute(options.farm).lexically_normal();
   options.remaining_s = remaining_s;
   return worker::run_daemon(options);
