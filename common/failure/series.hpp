@@ -51,7 +51,10 @@ inline constexpr double energy_residual_limit = 0.02;
 // After a velocity step the ledger's kinetic energy, taken at whole steps, counts modes of the grid's own frequency too high: by 7 %/n of
 // the energy after n steps in each of the dataset's materials. A row of the first steps counts by this share, so that no run is too short
 // to be judged.
-inline double ledger_weight(double steps) { return std::min(1.0, steps / 8.0); }
+inline double ledger_weight(double steps) {
+  const double settled = std::min(1.0, steps / 8.0);
+  return settled * settled;
+}
 
 struct Column {
   std::string name;

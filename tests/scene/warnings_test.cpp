@@ -30,10 +30,17 @@ TEST_CASE("an under-resolved length scale is told, once for each material") {
   CHECK(warning(scene).find("shale: w_0 = 1 mm is 0.50 of a cell") == 0);
 }
 
+TEST_CASE("a length scale of very many cells is told") {
+  json scene = quiet();
+  scene["phase_field"]["length_scale"] = 0.1;
+  CHECK(warning(scene).find("w_0 = 100 mm is 50 cells") != std::string::npos);
+}
+
 TEST_CASE("a nearly incompressible material is told") {
   json scene = quiet();
   scene["material"] = {{"density", 1000}, {"young", 1e9}, {"poisson", 0.48}, {"Gc", 10}, {"characteristic_width", 0.01}};
   CHECK(warning(scene).find("Poisson's ratio 0.48") != std::string::npos);
+  CHECK(warning(scene).find("the edge of the step to 0.89") != std::string::npos);
 }
 
 TEST_CASE("cells that are not square are told") {

@@ -1,0 +1,53 @@
+// fracfarm-study: measurements over patterns that are too long for a test, each with its figures and its verdict.
+#include <CLI/CLI.hpp>
+
+#include "common/base/exit_code.hpp"
+#include "tests/studies/studies.hpp"
+
+namespace fracfarm::studies {
+namespace {
+
+void add_choice(CLI::App& command, Choice& choice) {
+  command.add_option("--materials", choice.materials, "Of the table")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"pbx", "shale", "tungsten", "aluminum", "steel", "pbx5"}))
+      ->capture_default_str();
+  command.add_option("--loads", choice.loads, "uniaxial, biaxial")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"uniaxial", "biaxial"}))
+      ->capture_default_str();
+  command.add_option("--patterns", choice.patterns, "Patterns 1 ... of the seed")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  command.add_option("--seed", choice.seed, "Campaign seed of the patterns")->capture_default_str();
+  command.add_option("--cells", choice.cells, "Across and up")->check(CLI::Range(4, 1000))->capture_default_str();
+  command.add_option("--ramp", choice.ramp, "Seconds over which the loads' velocity rises")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--jobs", choice.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
+}
+
+}  // namespace
+}  // namespace fracfarm::studies
+
+int main(int argc, char** argv) {
+  using namespace fracfarm::studies;
+  CLI::App app("Measurements over many patterns.", "fracfarm-study");
+  app.require_subcommand(1);
+  TimeStepQuestion step;
+  CLI::App* step_command = app.add_subcommand("time-step", "Time to failure and cracks against the step; 1 where a pattern misses");
+  add_choice(*step_command, step.choice);
+  step_command->add_option("--cfl", step.cfl, "Steps to judge")->delimiter(',')->check(CLI::Range(0.001, 1.2))->capture_default_str();
+  step_command->add_option("--reference", step.reference, "Step to judge by")->check(CLI::Range(0.001, 1.2))->capture_default_str();
+  step_command->add_flag("--json", step.json, "Print one object");
+  RulesQuestion rule;
+  rule.choice.patterns = 50;
+  CLI::App* rules_command = app.add_subcommand("rules", "What each rule of no more than needed costs and saves");
+  add_choice(*rules_command, rule.choice);
+  rules_command->add_option("--rules", rule.rules, "Some rules only")->delimiter(',')->check(CLI::IsMember(rule_names()));
+  rules_command->add_flag("--json", rule.json, "Print one object");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? fracfarm::exit_ok : fracfarm::exit_bad_input;
+  }
+  return step_command->parsed() ? time_step(step) : rules(rule);
+}

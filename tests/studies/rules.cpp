@@ -1,0 +1,134 @@
+// Each rule on and off over the same patterns: largest differences and the factor that it saves. CPU seconds of runs that alternate, so
+// that a busy machine slows both alike.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/exit_code.hpp"
+#include "common/base/terminal.hpp"
+#include "tests/studies/studies.hpp"
+
+namespace fracfarm::studies {
+namespace {
+
+struct Rule {
+  std::string_view name;
+  std::string_view meaning;
+  void (*keep)(Scene&);  // the full way
+  void (*save)(Scene&);  // with the rule
+};
+
+constexpr Rule table[]{
+    {"float", "numbers of 32 bits", [](Scene& s) { s.phase_field.precision = Precision::double_; },
+     [](Scene& s) { s.phase_field.precision = Precision::float_; }},
+    {"elastic", "no plasticity at all: what plasticity only where it matters may save at most", [](Scene&) {},
+     [](Scene& s) { s.phase_field.plasticity = PlasticityModel::none; }},
+};
+
+struct Pair {
+  Case which;
+  std::optional<double> time;  // relative differences
+  double peak = 0.0, dice_half = 1.0, dice_open = 1.0;
+  bool same_rule = true;
+  double full_cpu_s = 0.0, saved_cpu_s = 0.0;
+  std::string trouble;
+};
+
+Pair compare(const Rule& rule, const Case& which, const Choice& choice) {
+  Scene full = scene_of(which, choice), saving = full;
+  rule.keep(full), rule.save(saving);
+  const Ending a = ending_of(full), b = ending_of(saving);
+  Pair pair;
+  pair.which = which, pair.trouble = a.trouble + b.trouble;
+  pair.time = apart(b.time, a.time);
+  pair.peak = apart(b.peak, a.peak).value_or(0.0);
+  pair.dice_half = dice(b.psi, a.psi, 0.5), pair.dice_open = dice(b.psi, a.psi, 0.9);
+  pair.same_rule = a.rule == b.rule;
+  pair.full_cpu_s = a.cpu_s, pair.saved_cpu_s = b.cpu_s;
+  return pair;
+}
+
+struct Line {
+  const Rule* rule;
+  std::string material, load;
+  Spread time, peak, dice_half, dice_open;
+  std::size_t other_rule = 0, troubles = 0, count = 0;
+  double factor = 0.0;
+};
+
+Line line_of(const Rule& rule, const std::string& material, const std::string& load, const std::vector<Pair>& pairs) {
+  Line line{&rule, material, load, {}, {}, {}, {}};
+  std::vector<double> time, peak, half, open;
+  double full = 0.0, saved = 0.0;
+  for (const Pair& p : pairs) {
+    if (p.which.material != material || p.which.load != load) continue;
+    ++line.count;
+    if (!p.trouble.empty()) {
+      ++line.troubles;
+      continue;
+    }
+    if (p.time) time.push_back(*p.time);
+    peak.push_back(p.peak), half.push_back(p.dice_half), open.push_back(p.dice_open);
+    line.other_rule += !p.same_rule;
+    full += p.full_cpu_s, saved += p.saved_cpu_s;
+  }
+  line.time = spread_of(time), line.peak = spread_of(peak), line.dice_half = spread_of(half), line.dice_open = spread_of(open);
+  line.factor = saved > 0.0 ? full / saved : 0.0;
+  return line;
+}
+
+void print_text(const std::vector<Line>& lines) {
+  std::vector<std::vector<std::string>> rows{{"rule", "material", "load", "runs", "time mean %", "largest %", "peak largest %",
+                                              "Dice 0.5 least", "Dice 0.9 least", "other criterion", "trouble", "faster"}};
+  for (const Line& l : lines)
+    rows.push_back({std::string(l.rule->name), l.material, l.load, std::to_string(l.count), fmt::format("{:.4f}", 100.0 * l.time.mean),
+                    fmt::format("{:.4f}", 100.0 * l.time.most), fmt::format("{:.5f}", 100.0 * l.peak.most),
+                    fmt::format("{:.4f}", l.dice_half.least), fmt::format("{:.4f}", l.dice_open.least), std::to_string(l.other_rule),
+                    std::to_string(l.troubles), fmt::format("{:.2f}", l.factor)});
+  fmt::print("{}\n", table_text(rows));
+  for (const Rule& rule : table) fmt::print("{}: {}\n", rule.name, rule.meaning);
+}
+
+void print_json(const std::vector<Line>& lines) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const Line& l : lines)
+    list.push_back({{"rule", l.rule->name},
+                    {"material", l.material},
+                    {"load", l.load},
+                    {"runs", l.count},
+                    {"time_mean", l.time.mean},
+                    {"time_largest", l.time.most},
+                    {"peak_largest", l.peak.most},
+                    {"dice_half_least", l.dice_half.least},
+                    {"dice_open_least", l.dice_open.least},
+                    {"other_criterion", l.other_rule},
+                    {"troubles", l.troubles},
+                    {"factor", l.factor}});
+  fmt::print("{}\n", Json{{"schema", "fracfarm.study.rules/1"}, {"rows", list}}.dump(2));
+}
+
+}  // namespace
+
+std::vector<std::string> rule_names() {
+  std::vector<std::string> names;
+  for (const Rule& rule : table) names.emplace_back(rule.name);
+  return names;
+}
+
+int rules(const RulesQuestion& question) {
+  const std::vector<Case> cases = cases_of(question.choice);
+  std::vector<Line> lines;
+  for (const Rule& rule : table) {
+    const auto& wanted = question.rules;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), rule.name) == wanted.end()) continue;
+    std::vector<Pair> pairs(cases.size());
+    for_all(cases.size(), question.choice.jobs, [&](std::size_t k) { pairs[k] = compare(rule, cases[k], question.choice); });
+    for (const std::string& material : question.choice.materials)
+      for (const std::string& load : question.choice.loads) lines.push_back(line_of(rule, material, load, pairs));
+  }
+  question.json ? print_json(lines) : print_text(lines);
+  return exit_ok;
+}
+
+}  // namespace fracfarm::studies
