@@ -128,13 +128,12 @@ void check_built(const Scene& scene, ProblemList& problems) {
     if (asked) problems.add(fmt::format("phase_field.{}", key), "given", "not in this build");
   };
   refuse(settings.crack_seeding != CrackSeeding::slot, "crack_seeding");
-  refuse(settings.surface != SurfaceModel::at2, "surface");
-  refuse(settings.plane != Plane::strain, "plane");
-  refuse(settings.split != Split::seed, "split");
+  const bool rows = settings.integrator == Integrator::explicit_central && settings.quadrature == Quadrature::gll;
+  refuse(rows && settings.surface != SurfaceModel::at2, "surface");
+  refuse(rows && settings.plane != Plane::strain, "plane");
+  refuse(rows && settings.split != Split::seed, "split");
   refuse(effective_plasticity(scene) == PlasticityModel::j2, "plasticity");
-  refuse(settings.quadrature != Quadrature::gll, "quadrature");
   refuse(settings.precision != Precision::double_, "precision");
-  refuse(settings.integrator != Integrator::explicit_central, "integrator");
 }
 
 void check_step(const Scene& scene, ProblemList& problems) {
