@@ -11,11 +11,17 @@ namespace {
 // Frame k belongs to the step nearest to k intervals.
 long long step_of_frame(std::uint64_t k, double interval, double dt) { return std::llround(static_cast<double>(k) * interval / dt); }
 
+// Frames closer than steps: one instant is stored once. Frames closer than 1e-18 steps are not told apart.
+std::uint64_t first_frame_after(long long n, double interval, double dt) {
+  return static_cast<std::uint64_t>(std::min(std::ceil((static_cast<double>(n) + 0.5) * dt / interval), 1e18));
+}
+
 }  // namespace
 
 RunLog::RunLog(const Scene& scene, double dt)
     : dt_(dt),
       frame_interval_(scene.frame_interval),
+      steps_per_row_(scene.phase_field.integrator == Integrator::explicit_central ? explicit_steps_per_row : 1),
       keeps_ledger_(scene.phase_field.integrator != Integrator::quasi_static),
       watch_(watched_directions(scene)) {}
 
@@ -27,13 +33,13 @@ Result<void> RunLog::note(const Simulation& simulation, long long n) {
     if (auto healthy = add_row(simulation, n); !healthy) return healthy;
   if (frame_interval_ > 0.0 && step_of_frame(next_frame_, frame_interval_, dt_) <= n) {
     frames_.push_back({time, damage_field(simulation)});
-    while (step_of_frame(next_frame_, frame_interval_, dt_) <= n) ++next_frame_;  // frames closer than steps: one instant is stored once
+    next_frame_ = std::max(next_frame_ + 1, first_frame_after(n, frame_interval_, dt_));
   }
   return {};
 }
 
 bool RunLog::row_is_due(const Simulation& simulation, long long n) const {
-  return n % steps_per_row == 0 || watch_.drops_at(simulation.mean_stress_zz());
+  return n % steps_per_row_ == 0 || watch_.drops_at(simulation.mean_stress_zz());
 }
 
 Result<void> RunLog::add_row(const Simulation& simulation, long long n) {

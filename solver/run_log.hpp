@@ -8,8 +8,9 @@
 
 namespace fracfarm {
 
-// One row every so many steps, and one at the step of the stress drop, so that the series gives it to the step.
-inline constexpr long long steps_per_row = 4;
+// One row every so many explicit steps or every implicit one, and one at the step of the stress drop, so that the series gives it to the
+// step.
+inline constexpr long long explicit_steps_per_row = 4;
 
 class RunLog {
  public:
@@ -36,6 +37,7 @@ class RunLog {
 
   double dt_;
   double frame_interval_;
+  long long steps_per_row_;
   bool keeps_ledger_;  // an unstable quasi-static jump sheds energy that no inertia takes up
   FailureWatch watch_;
   Series series_ = empty_series();

@@ -183,12 +183,13 @@ double wrong_ledger(const Context& c) {
 }
 
 // How far the stored peak lies from the series' own, which is sampled: at or above it, and not farther than the stress ever moves from row
-// to row. Waves cross a body of fewer than eight cells between two rows, so that the series may miss any peak.
+// to row. Waves cross a body of fewer than eight cells between two rows, and a body may break before the second one: the series may then
+// miss any peak.
 double peak_difference(const Context& c) {
   const auto stress = c.record.series["stress_zz"];
   const double seen = std::max(0.0, *std::max_element(stress.begin(), stress.end()));
   if (seen > c.record.peak_stress * (1.0 + 1e-12)) return infinity;
-  if (std::min(c.field.x.size(), c.field.z.size()) <= 8) return 0.0;
+  if (std::min(c.field.x.size(), c.field.z.size()) <= 8 || stress.size() < 4) return 0.0;
   double jump = 0.0;
   for (std::size_t row = 1; row < stress.size(); ++row) jump = std::max(jump, std::abs(stress[row] - stress[row - 1]));
   return share(std::max(0.0, c.record.peak_stress - seen - jump), c.record.peak_stress);

@@ -83,7 +83,8 @@ Outcome judge_result(const Scene& scene, const RunResult& result, const Trial& t
   outcome.steps = result.steps;
   if (const std::string broken = broken_rule(scene, result); !broken.empty()) outcome = violation(broken);
   outcome.steps = result.steps;
-  outcome.ledger_share = outcome.end == End::violation ? 0.0 : ledger_share(result);
+  const bool quasi_static = scene.phase_field.integrator == Integrator::quasi_static;
+  outcome.ledger_share = outcome.end == End::violation || quasi_static ? 0.0 : ledger_share(result);
   // The program has no step budget, so only runs that ended by themselves are made again with their record.
   outcome.validated =
       trial.validate && outcome.end != End::violation && result.judgement.rule != "step_budget" && result.judgement.rule != "wall_clock";

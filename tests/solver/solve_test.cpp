@@ -96,10 +96,12 @@ TEST_CASE("the stress drop is found at its step, not at the next fourth one") {
   CHECK(*run(scene).judgement.time_to_failure == static_cast<double>(n) * 4e-7);
 }
 
-TEST_CASE("a horizon shorter than a step is one step") {
+TEST_CASE("a horizon shorter than a step is one step, however many frames were to be in it") {
   Scene scene = pulled("pbx", 8);
-  scene.horizon = 1e-20;
-  CHECK(run(scene).steps == 1);
+  scene.horizon = 1e-20, scene.frame_interval = 1e-24;
+  const RunResult result = run(scene);
+  CHECK(result.steps == 1);
+  CHECK(result.frames.size() == 2);
 }
 
 TEST_CASE("half the step scale is half the step") {
