@@ -127,12 +127,12 @@ void check_built(const Scene& scene, ProblemList& problems) {
   const auto refuse = [&](bool asked, std::string_view key) {
     if (asked) problems.add(fmt::format("phase_field.{}", key), "given", "not in this build");
   };
-  refuse(settings.crack_seeding != CrackSeeding::slot, "crack_seeding");
-  const bool rows = settings.integrator == Integrator::explicit_central && settings.quadrature == Quadrature::gll;
+  const bool rows = settings.integrator == Integrator::explicit_central && settings.quadrature == Quadrature::gll &&
+                    effective_plasticity(scene) != PlasticityModel::j2;
+  refuse(rows && settings.crack_seeding != CrackSeeding::slot, "crack_seeding");
   refuse(rows && settings.surface != SurfaceModel::at2, "surface");
   refuse(rows && settings.plane != Plane::strain, "plane");
   refuse(rows && settings.split != Split::seed, "split");
-  refuse(effective_plasticity(scene) == PlasticityModel::j2, "plasticity");
   refuse(settings.precision != Precision::double_, "precision");
 }
 

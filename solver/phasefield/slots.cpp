@@ -57,4 +57,40 @@ std::vector<unsigned char> slot_mask(std::span<const Segment> cracks, const Grid
   return mask;
 }
 
+std::vector<unsigned char> node_mask(std::span<const Segment> cracks, const Grid& grid) {
+  std::vector<unsigned char> mask(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), 0);
+  const auto hold = [&](double column, double row) {
+    const double i = std::round(column), j = std::round(row);
+    if (i >= 0.0 && j >= 0.0 && i < grid.columns && j < grid.rows)
+      mask[static_cast<std::size_t>(j) * grid.columns + static_cast<std::size_t>(i)] = 1;
+  };
+  for (const Segment& crack : cracks) {
+    const double x0 = crack.x0 / grid.hx, x1 = crack.x1 / grid.hx, z0 = crack.z0 / grid.hz, z1 = crack.z1 / grid.hz;
+    const bool across = std::abs(x1 - x0) >= std::abs(z1 - z0);
+    const double from = across ? x0 : z0, to = across ? x1 : z1;
+    if (from == to) hold(x0, z0);
+    if (from == to) continue;
+    const double first = std::max(std::round(std::min(from, to)), 0.0);
+    const double last = std::min(std::round(std::max(from, to)), 1.0 * std::max(grid.columns, grid.rows));
+    for (double line = first; line <= last; line += 1.0) {
+      const double t = std::clamp((line - from) / (to - from), 0.0, 1.0);
+      hold(across ? line : x0 + t * (x1 - x0), across ? z0 + t * (z1 - z0) : line);
+    }
+  }
+  return mask;
+}
+
+std::vector<unsigned char> held_mask(CrackSeeding seeding, std::span<const Segment> cracks, const Grid& grid) {
+  if (seeding == CrackSeeding::history) return slot_mask({}, grid);
+  return seeding == CrackSeeding::nodes ? node_mask(cracks, grid) : slot_mask(cracks, grid);
+}
+
+std::vector<unsigned char> seeded_elements(CrackSeeding seeding, std::span<const Segment> cracks, const Grid& grid) {
+  std::vector<unsigned char> seeded(static_cast<std::size_t>(grid.cells_x()) * static_cast<std::size_t>(grid.cells_z()), 0);
+  if (seeding != CrackSeeding::history) return seeded;
+  for (const Segment& crack : cracks)
+    for (const auto& [i, j] : crossed_elements(crack, grid)) seeded[static_cast<std::size_t>(j * grid.cells_x() + i)] = 1;
+  return seeded;
+}
+
 }  // namespace fracfarm::phasefield

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 using namespace fracfarm;
@@ -43,4 +44,30 @@ TEST_CASE("a slot holds the four nodes of each element that it crosses") {
   CHECK(std::accumulate(mask.begin(), mask.end(), 0) == 8);
   for (const int row : {5, 6})
     for (int column = 1; column <= 4; ++column) CHECK(mask[static_cast<std::size_t>(row * 11 + column)] == 1);
+}
+
+TEST_CASE("a row of nodes follows its segment, one node on each grid line that it crosses at the steeper angle") {
+  const auto held = [&](const Segment& crack) {
+    std::vector<std::pair<int, int>> nodes;
+    const auto mask = node_mask(std::vector<Segment>{crack}, grid);
+    for (int n = 0; n < 121; ++n)
+      if (mask[static_cast<std::size_t>(n)]) nodes.emplace_back(n % 11, n / 11);
+    return nodes;
+  };
+  using Nodes = std::vector<std::pair<int, int>>;
+  CHECK(held({0.21, 0.52, 0.58, 0.52}) == Nodes{{2, 5}, {3, 5}, {4, 5}, {5, 5}, {6, 5}});
+  CHECK(held({0.3, 0.1, 0.3, 0.4}) == Nodes{{3, 1}, {3, 2}, {3, 3}, {3, 4}});
+  CHECK(held({0.4, 0.7, 0.1, 0.5}) == Nodes{{1, 5}, {2, 6}, {3, 6}, {4, 7}});
+  CHECK(held({0.9, 0.5, 1e9, 0.5}) == Nodes{{9, 5}, {10, 5}});
+  CHECK(held({0.52, 0.52, 0.52, 0.52}) == Nodes{{5, 5}});
+}
+
+TEST_CASE("each seeding holds its own nodes, and only a seeded history holds none") {
+  const std::vector<Segment> cracks{{0.21, 0.52, 0.58, 0.52}};
+  const auto count = [](const std::vector<unsigned char>& bytes) { return std::count(bytes.begin(), bytes.end(), 1); };
+  CHECK(count(held_mask(CrackSeeding::slot, cracks, grid)) == 10);
+  CHECK(count(held_mask(CrackSeeding::nodes, cracks, grid)) == 5);
+  CHECK(count(held_mask(CrackSeeding::history, cracks, grid)) == 0);
+  CHECK(count(seeded_elements(CrackSeeding::history, cracks, grid)) == 4);
+  CHECK(count(seeded_elements(CrackSeeding::slot, cracks, grid)) == 0);
 }

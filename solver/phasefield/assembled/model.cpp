@@ -110,6 +110,14 @@ void number_equations(Model& model) {
   for (const unsigned char is_held : model.mask) model.psi_equation.push_back(is_held ? -1 : model.psi_equations++);
 }
 
+void seed_history(Model& model, const Scene& scene) {
+  const std::vector<unsigned char> seeded = seeded_elements(model.settings.crack_seeding, scene.cracks, model.grid);
+  for (std::size_t e = 0; e < seeded.size(); ++e) {
+    const ElementRow& row = model.element_rows[e / static_cast<std::size_t>(model.grid.cells_x())];
+    model.first_history.insert(model.first_history.end(), 4, seeded[e] ? seeded_history(row.Gc, row.width) : row.surface.floor);
+  }
+}
+
 }  // namespace
 
 Model build_model(const Scene& scene, Prescription prescription) {
@@ -121,12 +129,9 @@ Model build_model(const Scene& scene, Prescription prescription) {
   set_rows(model, scene);
   model.boundary = build_boundary(scene, side_nodes(model));
   model.prescription = std::move(prescription);
-  model.mask = slot_mask(scene.cracks, model.grid);
+  model.mask = held_mask(settings.crack_seeding, scene.cracks, model.grid);
   number_equations(model);
-  model.first_history.resize(static_cast<std::size_t>(4 * model.elements()));
-  for (int e = 0; e < model.elements(); ++e)
-    std::fill_n(model.first_history.begin() + 4 * e, 4,
-                model.element_rows[static_cast<std::size_t>(e / model.grid.cells_x())].surface.floor);
+  seed_history(model, scene);
   return model;
 }
 

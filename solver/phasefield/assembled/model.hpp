@@ -53,12 +53,14 @@ struct Model {
   std::vector<unsigned char> mask;  // by node: 1 where psi is held at 1
   std::vector<int> psi_equation;
   int psi_equations = 0;
-  std::vector<double> first_history;  // H at the points at t = 0, J/m^3
-  double stable_dt = 0.0;             // s, of the explicit scheme
-  double damage_tolerance = 1e-10;    // residual of the psi equation over its right side
+  std::vector<double> first_history;   // H at the points at t = 0, J/m^3
+  std::vector<unsigned char> cut_out;  // by element: 1 where there is no material, a notch with faces that no scene can say; empty: none
+  double stable_dt = 0.0;              // s, of the explicit scheme
+  double damage_tolerance = 1e-10;     // residual of the psi equation over its right side
 
   int nodes() const { return grid.columns * grid.rows; }
   int elements() const { return grid.cells_x() * grid.cells_z(); }
+  bool is_cut_out(int e) const { return !cut_out.empty() && cut_out[static_cast<std::size_t>(e)]; }
   int node(int column, int row) const { return row * grid.columns + column; }
   std::array<int, 4> nodes_of(int i, int j) const { return {node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j + 1)}; }
 };

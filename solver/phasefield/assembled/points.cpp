@@ -52,7 +52,8 @@ void respond(const Model& model, const State& state, const Vector& u, Flow flow,
   each_row(model, [&](int j, const ElementRow& row) {
     std::visit(
         [&](const auto& law) {
-          along_row(model, j, [&](int, const std::array<int, 4>& nodes, std::size_t first) {
+          along_row(model, j, [&](int element, const std::array<int, 4>& nodes, std::size_t first) {
+            if (model.is_cut_out(element)) return;  // its answers stay zero
             const ElementVector local = gather(u, nodes);
             for (std::size_t k = 0; k < 4; ++k) {
               const Strain e = strain_at(model.element.points[k], local);
@@ -115,6 +116,7 @@ void assemble_stiffness(const Model& model, const State& state, const Vector& u,
     std::visit(
         [&](const auto& law) {
           along_row(model, j, [&](int element, const std::array<int, 4>& nodes, std::size_t first) {
+            if (model.is_cut_out(element)) return;
             const ElementVector local = gather(u, nodes);
             Matrix8 K = Matrix8::Zero();
             for (std::size_t k = 0; k < 4; ++k) {
@@ -145,6 +147,7 @@ void assemble_damage(const Model& model, Scratch& scratch) {
     for (const Point& point : model.element.points)
       slopes += model.element.weight * row.surface.slope * (point.slope.transpose() * point.slope);
     along_row(model, j, [&](int element, const std::array<int, 4>& nodes, std::size_t first) {
+      if (model.is_cut_out(element)) return;
       Matrix4 K = slopes;
       Eigen::Vector4d source = Eigen::Vector4d::Zero();
       for (std::size_t k = 0; k < 4; ++k) {
