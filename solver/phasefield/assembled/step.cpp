@@ -8,11 +8,15 @@
 namespace fracfarm::phasefield::assembled {
 namespace {
 
-// Residuals over the elements' own forces. While nothing damages Newmark's is rounding, because its energy balance is exact and the factor
-// fits; else a pass only has to be finer than what the damage changes.
+// Residuals over the elements' own forces. While nothing damages they are rounding: Newmark's energy balance is exact, the factor fits.
+// Else a pass only has to be finer than what the damage changes.
 constexpr double exact = 1e-15, newmark_tolerance = 1e-10, quasi_static_tolerance = 1e-8;
 constexpr double at_rest = 1e-9;    // a step that moves psi by less leaves the factor as good as new
 constexpr double reduction = 1e-3;  // of the residual, in the later passes of a step
+
+double tolerance_after(const State& state, double while_damaging) {
+  return (state.psi - state.psi_previous).cwiseAbs().maxCoeff() > at_rest ? while_damaging : exact;
+}
 
 Eigen::Index displacement_of(const Motion& motion, std::size_t node) {
   return static_cast<Eigen::Index>(2 * node + (motion.axis == Axis::z));
@@ -134,8 +138,7 @@ Result<void> newmark_step(const Model& model, State& state, Scratch& scratch, do
     const auto at = static_cast<Eigen::Index>(d);
     state.u[at] = model.equation[d] >= 0 ? predictor[at] + beta * dt * dt * state.a[at] : state.u[at] + 0.5 * dt * (v[at] + state.v[at]);
   }
-  const bool damaging = (state.psi - state.psi_previous).cwiseAbs().maxCoeff() > at_rest;
-  const Balance balance{now + dt, 1.0 / (beta * dt * dt), &predictor, damaging ? newmark_tolerance : exact};
+  const Balance balance{now + dt, 1.0 / (beta * dt * dt), &predictor, tolerance_after(state, newmark_tolerance)};
   if (auto solved = staggered_passes(model, balance, state, scratch); !solved) return solved;
   for (std::size_t d = 0; d < model.equation.size(); ++d) {
     if (model.equation[d] < 0) continue;
@@ -153,7 +156,7 @@ Result<void> quasi_static_step(const Model& model, State& state, Scratch& scratc
   const Prescription& told = model.prescription;
   for (std::size_t k = 0; k < told.told.size(); ++k)
     state.u[2 * model.node(told.told[k].column, told.told[k].row) + (told.told[k].axis == Axis::z)] = told.displacement(k, now + dt);
-  return staggered_passes(model, {now + dt, 0.0, nullptr, quasi_static_tolerance}, state, scratch);
+  return staggered_passes(model, {now + dt, 0.0, nullptr, tolerance_after(state, quasi_static_tolerance)}, state, scratch);
 }
 
 Result<void> advance(const Model& model, State& state, Scratch& scratch, double now, double dt) {
