@@ -132,7 +132,7 @@ Result<void> Keeper::judge_and_append(const Finished& finished) {
   const auto bytes = read_file(finished.record, max_record_bytes);
   if (!bytes) return fail(Fault::output_bad, "readable: " + bytes.error().message);
   if (auto sound = options_.judge(*bytes, finished.assignment.key, finished.summary); !sound) return sound;
-  return shard_of(finished.assignment).append(finished.assignment.key + ".h5", *bytes);
+  return shard_of(finished.assignment).append(finished.assignment.key + ".h5", *bytes, finished.summary.record_sha256);
 }
 
 // Everything appended since the last time, all shards: sync and read back, then the outbox, then the news.

@@ -92,7 +92,7 @@ Result<void> ShardWriter::begin() {
   return {};
 }
 
-Result<void> ShardWriter::append(const std::string& name, std::string_view bytes) {
+Result<void> ShardWriter::append(const std::string& name, std::string_view bytes, const std::string& sha256) {
   if (bytes.size() > max_entry_bytes || name.size() > 100)
     return fail(Fault::output_bad,
                 fmt::format("{} of {} bytes does not fit a shard; the limit is {}", name, bytes.size(), max_entry_bytes));
@@ -106,7 +106,7 @@ Result<void> ShardWriter::append(const std::string& name, std::string_view bytes
   if (!write_all(fd_, bytes, data) || !write_all(fd_, padding, data + bytes.size()) ||
       !write_all(fd_, {header.data(), header.size()}, end_))
     return system_error("append to", path_);
-  pending_.push_back({{path_.filename().string(), data, bytes.size(), sha256_hex(bytes)}, xxh3_hex(bytes)});
+  pending_.push_back({{path_.filename().string(), data, bytes.size(), sha256}, xxh3_hex(bytes)});
   end_ = data + padded(bytes.size());
   ++entries_;
   return {};

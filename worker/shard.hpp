@@ -38,8 +38,9 @@ class ShardWriter {
   ShardWriter(const ShardWriter&) = delete;
   ShardWriter& operator=(const ShardWriter&) = delete;
 
-  // Appends one entry, not yet durable. Errors: NODE_LOST (disk full, store not there); the shard stays sound.
-  Result<void> append(const std::string& name, std::string_view bytes);
+  // Appends one entry, not yet durable, whose digest the caller knows. Errors: NODE_LOST (disk full, store not there); the shard stays
+  // sound.
+  Result<void> append(const std::string& name, std::string_view bytes, const std::string& sha256);
   // Makes everything that was appended since the last commit durable; one result for each, in order. Where the sync fails all are
   // NODE_LOST; where bytes read back differently that one is OUTPUT_BAD. In both cases the shard is left behind and the next append begins
   // another.

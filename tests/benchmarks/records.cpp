@@ -111,7 +111,7 @@ void keep(benchmark::State& state) {
   for (auto _ : state) {
     const std::string bytes = read_file(file, std::uint64_t{1} << 30).value();
     if (!worker::judge_record(bytes, real_run().task.key, real_run().summary)) return state.SkipWithError("refused");
-    if (!shard.append(real_run().task.key + ".h5", bytes)) return state.SkipWithError("not appended");
+    if (!shard.append(real_run().task.key + ".h5", bytes, real_run().summary.record_sha256)) return state.SkipWithError("not appended");
     if (!shard.commit().front()) return state.SkipWithError("not kept");
   }
 }

@@ -37,14 +37,18 @@ struct Store {
 
 std::string record(int n) { return std::string(static_cast<std::size_t>(100 + 333 * n), static_cast<char>('a' + n)); }
 
+Result<void> append(ShardWriter& shard, const std::string& name, const std::string& bytes) {
+  return shard.append(name, bytes, sha256_hex(bytes));
+}
+
 }  // namespace
 
 TEST_CASE("what is committed lies where it is said to lie, in a tar that tar itself reads") {
   Store store;
   ShardWriter shard(store.options, store.clock);
-  for (int n = 0; n < 5; ++n) REQUIRE(shard.append("key" + std::to_string(n) + ".h5", record(n)).has_value());
+  for (int n = 0; n < 5; ++n) REQUIRE(append(shard, "key" + std::to_string(n) + ".h5", record(n)).has_value());
   const auto first = shard.commit();
-  REQUIRE(shard.append("key5.h5", record(5)).has_value());
+  REQUIRE(append(shard, "key5.h5", record(5)).has_value());
   const auto second = shard.commit();
   REQUIRE(first.size() == 5);
   REQUIRE(second.size() == 1);
@@ -65,7 +69,7 @@ TEST_CASE("the same records give the same bytes") {
   for (std::string& digest : digests) {
     Store store;
     ShardWriter shard(store.options, store.clock);
-    for (int n = 0; n < 3; ++n) REQUIRE(shard.append("key" + std::to_string(n) + ".h5", record(n)).has_value());
+    for (int n = 0; n < 3; ++n) REQUIRE(append(shard, "key" + std::to_string(n) + ".h5", record(n)).has_value());
     (void)shard.commit();
     digest = sha256_file(store.files().at(0)).value();
   }
@@ -78,13 +82,13 @@ TEST_CASE("a full shard is followed by another, and a new run never appends to a
   {
     ShardWriter shard(store.options, store.clock);
     for (int n = 0; n < 5; ++n) {
-      REQUIRE(shard.append("key" + std::to_string(n) + ".h5", record(n)).has_value());
+      REQUIRE(append(shard, "key" + std::to_string(n) + ".h5", record(n)).has_value());
       REQUIRE(shard.commit().at(0).has_value());
     }
   }
   CHECK(store.files().size() == 3);
   ShardWriter again(store.options, store.clock);
-  REQUIRE(again.append("key9.h5", record(9)).has_value());
+  REQUIRE(append(again, "key9.h5", record(9)).has_value());
   REQUIRE(again.commit().at(0).has_value());
   CHECK(store.files().size() == 4);
 }
@@ -97,12 +101,12 @@ TEST_CASE("bytes that read back differently after the sync are OUTPUT_BAD, and t
     file.put('!');
   };
   ShardWriter shard(store.options, store.clock);
-  REQUIRE(shard.append("bad.h5", record(0)).has_value());
-  REQUIRE(shard.append("good.h5", record(1)).has_value());
+  REQUIRE(append(shard, "bad.h5", record(0)).has_value());
+  REQUIRE(append(shard, "good.h5", record(1)).has_value());
   const auto results = shard.commit();
   CHECK(results[0].error().fault == Fault::output_bad);
   CHECK(results[1].has_value());
-  REQUIRE(shard.append("next.h5", record(2)).has_value());
+  REQUIRE(append(shard, "next.h5", record(2)).has_value());
   (void)shard.commit();
   CHECK(store.files().size() == 2);
 }
@@ -110,7 +114,7 @@ TEST_CASE("bytes that read back differently after the sync are OUTPUT_BAD, and t
 TEST_CASE("a shard that was cut short is OUTPUT_BAD for what is missing") {
   Store store;
   ShardWriter shard(store.options, store.clock);
-  REQUIRE(shard.append("a.h5", record(4)).has_value());
+  REQUIRE(append(shard, "a.h5", record(4)).has_value());
   const auto placed = shard.commit().at(0).value();
   const auto path = store.files().at(0);
   std::filesystem::resize_file(path, tar_block + 50);
@@ -121,13 +125,13 @@ TEST_CASE("a shard that was cut short is OUTPUT_BAD for what is missing") {
 TEST_CASE("a torn tail hides nothing that was committed") {
   Store store;
   ShardWriter shard(store.options, store.clock);
-  for (int n = 0; n < 3; ++n) REQUIRE(shard.append("key" + std::to_string(n) + ".h5", record(n)).has_value());
+  for (int n = 0; n < 3; ++n) REQUIRE(append(shard, "key" + std::to_string(n) + ".h5", record(n)).has_value());
   (void)shard.commit();
   const auto path = store.files().at(0);
   const auto whole = list_entries(path).value();
   CHECK(whole.entries.size() == 3);
   CHECK_FALSE(whole.torn);
-  REQUIRE(shard.append("key3.h5", record(3)).has_value());  // and the writer is killed before its commit
+  REQUIRE(append(shard, "key3.h5", record(3)).has_value());  // and the writer is killed before its commit
   const auto end = std::filesystem::file_size(path);
   for (const std::uintmax_t cut : {end - 1, end - 700, end - 1500}) {
     std::filesystem::resize_file(path, cut);
@@ -144,7 +148,7 @@ TEST_CASE("a store that is no folder and a disk that is full are the node's faul
   std::ofstream(store.folder.path / "file") << "x";
   store.options.store = store.folder.path / "file" / "store";
   ShardWriter shard(store.options, store.clock);
-  CHECK(shard.append("a.h5", record(1)).error().fault == Fault::node_lost);
+  CHECK(append(shard, "a.h5", record(1)).error().fault == Fault::node_lost);
   CHECK(shard.commit().empty());
 }
 
