@@ -121,21 +121,6 @@ void check_laws(const Scene& scene, ProblemList& problems) {
     problems.add("phase_field.precision", "float", "double with gauss, newmark, quasi_static or j2", "double");
 }
 
-// What the grammar has and the solver does not have yet.
-void check_built(const Scene& scene, ProblemList& problems) {
-  const PhaseFieldSettings& settings = scene.phase_field;
-  const auto refuse = [&](bool asked, std::string_view key) {
-    if (asked) problems.add(fmt::format("phase_field.{}", key), "given", "not in this build");
-  };
-  const bool rows = settings.integrator == Integrator::explicit_central && settings.quadrature == Quadrature::gll &&
-                    effective_plasticity(scene) != PlasticityModel::j2;
-  refuse(rows && settings.crack_seeding != CrackSeeding::slot, "crack_seeding");
-  refuse(rows && settings.surface != SurfaceModel::at2, "surface");
-  refuse(rows && settings.plane != Plane::strain, "plane");
-  refuse(rows && settings.split != Split::seed, "split");
-  refuse(settings.precision != Precision::double_, "precision");
-}
-
 void check_step(const Scene& scene, ProblemList& problems) {
   const PhaseFieldSettings& settings = scene.phase_field;
   const double edge = step_edge(scene);
@@ -163,7 +148,6 @@ void read_phase_field(Fields& top, Scene& scene) {
 
 void check_phase_field(const Scene& scene, ProblemList& problems) {
   check_laws(scene, problems);
-  check_built(scene, problems);
   check_step(scene, problems);
 }
 

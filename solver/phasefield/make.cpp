@@ -15,7 +15,9 @@ bool rows_can(const Scene& scene) {
 
 std::unique_ptr<Simulation> make_phase_field(const Scene& scene) {
   if (!rows_can(scene)) return std::make_unique<phasefield::assembled::Assembled>(scene);
-  return std::make_unique<phasefield::PhaseField>(scene, phasefield::chosen_kernels());
+  using namespace phasefield;
+  if (scene.phase_field.precision == Precision::float_) return std::make_unique<PhaseField<float>>(scene, chosen_kernels<float>());
+  return std::make_unique<PhaseField<double>>(scene, chosen_kernels<double>());
 }
 
 }  // namespace fracfarm

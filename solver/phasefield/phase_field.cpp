@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "solver/phasefield/passes.hpp"
+
 namespace fracfarm::phasefield {
 namespace {
 
 // Mean outward stress on the held nodes of each side, Pa.
-std::array<double, 4> reactions(const Model& model, const Scratch& scratch) {
+template <class Real>
+std::array<double, 4> reactions(const Model& model, const Scratch<Real>& scratch) {
   const double width = model.grid.hx * model.grid.cells_x(), height = model.grid.hz * model.grid.cells_z();
   std::array<double, 4> stress{};
   for (const Motion& motion : model.boundary.motions) {
@@ -14,7 +17,7 @@ std::array<double, 4> reactions(const Model& model, const Scratch& scratch) {
     const bool vertical = motion.axis == Axis::x;
     const double outward = motion.side == Side::right || motion.side == Side::top ? 1.0 : -1.0;
     double force = 0.0;
-    for (const std::size_t n : motion.nodes) force -= (vertical ? scratch.fx : scratch.fz)[n];
+    for (const std::size_t n : motion.nodes) force -= static_cast<double>((vertical ? scratch.fx : scratch.fz)[n]);
     stress[static_cast<std::size_t>(motion.side)] += outward * force / (vertical ? height : width);
   }
   return stress;
@@ -48,33 +51,51 @@ std::vector<double> coordinates(int count, double h) {
 
 }  // namespace
 
-PhaseField::PhaseField(const Scene& scene, const Kernels& kernels)
-    : kernels_(kernels), initial_(scene.initial), model_(build_model(scene)), state_(make_state(model_)), scratch_(make_scratch(model_)) {}
+template <class Real>
+PhaseField<Real>::PhaseField(const Scene& scene, const Kernels<Real>& kernels)
+    : kernels_(kernels),
+      initial_(scene.initial),
+      model_(build_model(scene)),
+      state_(make_state<Real>(model_)),
+      scratch_(make_scratch<Real>(model_)) {}
 
-Result<void> PhaseField::start(double dt) { return phasefield::start(model_, initial_, state_, scratch_, kernels_, dt); }
+template <class Real>
+Result<void> PhaseField<Real>::start(double dt) {
+  return phasefield::start(model_, initial_, state_, scratch_, kernels_, dt);
+}
 
-Result<void> PhaseField::step(long long n, double dt) { return phasefield::step(model_, state_, scratch_, kernels_, n, dt); }
+template <class Real>
+Result<void> PhaseField<Real>::step(long long n, double dt) {
+  return phasefield::step(model_, state_, scratch_, kernels_, n, dt);
+}
 
-double PhaseField::area() const { return model_.grid.hx * model_.grid.cells_x() * model_.grid.hz * model_.grid.cells_z(); }
+template <class Real>
+double PhaseField<Real>::area() const {
+  return model_.grid.hx * model_.grid.cells_x() * model_.grid.hz * model_.grid.cells_z();
+}
 
-double PhaseField::mean_stress_zz() const { return scratch_.stress.zz / area(); }
+template <class Real>
+double PhaseField<Real>::mean_stress_zz() const {
+  return state_.sums.stress.zz / area();
+}
 
-bool PhaseField::crack_reaches(Side side, double threshold) const {
+template <class Real>
+bool PhaseField<Real>::crack_reaches(Side side, double threshold) const {
   bool found = false;
-  along_side(model_.grid, side, [&](std::size_t n) { found = found || state_.psi[n] > threshold; });
+  along_side(model_.grid, side, [&](std::size_t n) { found = found || static_cast<double>(state_.psi[n]) > threshold; });
   return found;
 }
 
-SampleRow PhaseField::sample(long long n, double dt) const {
-  const View v = view(model_, state_, scratch_);
-  const SurfaceSum surface = kernels_.surface(v, state_.psi.data() + model_.grid.origin());
+template <class Real>
+SampleRow PhaseField<Real>::sample(long long n, double dt) const {
+  const SurfaceSum surface = phasefield::surface(model_, state_, scratch_, kernels_);
   SampleRow s;
   s.step_time = static_cast<double>(n) * dt;
-  s.stress_xx = scratch_.stress.xx / area();
-  s.stress_zz = scratch_.stress.zz / area();
+  s.stress_xx = state_.sums.stress.xx / area();
+  s.stress_zz = state_.sums.stress.zz / area();
   s.reaction = reactions(model_, scratch_);
-  s.kinetic_energy = kernels_.kinetic(v, 0.5 * dt);
-  s.elastic_energy = scratch_.drop.elastic;
+  s.kinetic_energy = state_.sums.kinetic;
+  s.elastic_energy = state_.sums.elastic;
   s.released_energy = state_.released;
   s.surface_energy = surface.local + surface.gradient - state_.initial_surface;
   s.external_work = state_.external_work;
@@ -85,40 +106,60 @@ SampleRow PhaseField::sample(long long n, double dt) const {
   return s;
 }
 
-void PhaseField::copy_damage(std::vector<double>& values) const {
+template <class Real>
+void PhaseField<Real>::copy_damage(std::vector<double>& values) const {
   const Grid& grid = model_.grid;
   values.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   for (int j = 0; j < grid.rows; ++j)
     std::copy_n(state_.psi.data() + grid.index(0, j), grid.columns, values.data() + static_cast<std::ptrdiff_t>(j) * grid.columns);
 }
 
-std::vector<double> PhaseField::x() const { return coordinates(model_.grid.columns, model_.grid.hx); }
-std::vector<double> PhaseField::z() const { return coordinates(model_.grid.rows, model_.grid.hz); }
+template <class Real>
+std::vector<double> PhaseField<Real>::x() const {
+  return coordinates(model_.grid.columns, model_.grid.hx);
+}
+template <class Real>
+std::vector<double> PhaseField<Real>::z() const {
+  return coordinates(model_.grid.rows, model_.grid.hz);
+}
 
-void PhaseField::save(ArchiveWriter& archive) const {
-  for (const Field* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous}) archive.put_array(*field);
-  for (const Field& field : state_.history) archive.put_array(field);
+template <class Real>
+void PhaseField<Real>::save(ArchiveWriter& archive) const {
+  for (const Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
+    archive.put_array(*field);
+  for (const Field<Real>& field : state_.history) archive.put_array(field);
   for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
+  archive.put(state_.sums);
   archive.put(state_.sweeps);
 }
 
-bool PhaseField::load(ArchiveReader& archive, long long n, double dt) {
-  for (Field* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous}) archive.get_array_like(*field);
-  for (Field& field : state_.history) archive.get_array_like(field);
+template <class Real>
+bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
+  for (Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
+    archive.get_array_like(*field);
+  for (Field<Real>& field : state_.history) archive.get_array_like(field);
   for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})
     *value = archive.get<double>();
+  state_.sums = archive.get<StepSums>();
   state_.sweeps = archive.get<long long>();
   if (archive.failed()) return false;
   refresh(model_, state_, scratch_, kernels_, n, dt);
   return true;
 }
 
-std::map<std::string, double> PhaseField::stage_seconds() const {
+template <class Real>
+std::map<std::string, double> PhaseField<Real>::stage_seconds() const {
   std::map<std::string, double> seconds;
   for (std::size_t k = 0; k < stage_names.size(); ++k) seconds[stage_names[k]] = scratch_.clock.seconds()[k];
   return seconds;
 }
 
-std::string PhaseField::kernel() const { return std::string(kernels_.isa) + "/double"; }
+template <class Real>
+std::string PhaseField<Real>::kernel() const {
+  return std::string(kernels_.isa) + (sizeof(Real) == sizeof(double) ? "/double" : "/float");
+}
+
+template class PhaseField<double>;
+template class PhaseField<float>;
 
 }  // namespace fracfarm::phasefield

@@ -1,4 +1,4 @@
-// The phase-field method behind the time loop's seam.
+// The explicit phase-field method behind the time loop's seam, in double or float.
 #pragma once
 
 #include "solver/phasefield/step.hpp"
@@ -6,9 +6,10 @@
 
 namespace fracfarm::phasefield {
 
+template <class Real>
 class PhaseField final : public Simulation {
  public:
-  PhaseField(const Scene& scene, const Kernels& kernels);
+  PhaseField(const Scene& scene, const Kernels<Real>& kernels);
 
   double stable_dt() const override { return model_.stable_dt; }
   Result<void> start(double dt) override;
@@ -31,18 +32,18 @@ class PhaseField final : public Simulation {
   std::map<std::string, double> stage_seconds() const override;
   std::string kernel() const override;
 
-  const Model& model() const { return model_; }
-  State& state() { return state_; }
-  Scratch& scratch() { return scratch_; }
+  Model& model() { return model_; }  // of tests
+  State<Real>& state() { return state_; }
+  Scratch<Real>& scratch() { return scratch_; }
 
  private:
   double area() const;
 
-  const Kernels& kernels_;
+  const Kernels<Real>& kernels_;
   Initial initial_;
   Model model_;
-  mutable State state_;  // kernels take one view of everything; sampling changes neither
-  mutable Scratch scratch_;
+  mutable State<Real> state_;  // kernels take one view of everything; sampling changes neither
+  mutable Scratch<Real> scratch_;
 };
 
 }  // namespace fracfarm::phasefield

@@ -1,47 +1,176 @@
 #include "solver/phasefield/state.hpp"
 
-namespace fracfarm::phasefield {
+#include <algorithm>
 
-State make_state(const Model& model) {
-  const Field zero = model.grid.field();
-  State state{zero, zero, zero, zero, {zero, zero, zero, zero}, zero, zero};
-  for (const std::size_t n : model.pinned) state.psi[n] = state.psi_previous[n] = 1.0;
+namespace fracfarm::phasefield {
+namespace {
+
+template <class Real>
+ElementRow<Real> converted(const ElementRow<double>& row) {
+  const auto to = [](double value) { return static_cast<Real>(value); };
+  const law::Stiffness<double>& C = row.stiffness;
+  const law::Secant<double>& s = row.secant;
+  return {{to(C.C11), to(C.C13), to(C.C33), to(C.C55)},
+          {to(s.bulk), to(s.mu), to(s.yield), to(s.hardening_share)},
+          row.plastic,
+          to(row.lambda),
+          to(row.mu),
+          to(row.per_dimensions),
+          to(row.star_convexity),
+          to(row.surface_square),
+          to(row.surface_linear),
+          to(row.surface_gradient),
+          to(row.surface_length)};
+}
+
+template <class Real>
+NodeRow<Real> converted(const NodeRow<double>& row) {
+  const auto to = [](double value) { return static_cast<Real>(value); };
+  return {to(row.side), to(row.south), to(row.north), to(row.diagonal), to(row.weight), to(row.threshold), to(row.mass)};
+}
+
+// Pointers to column 0 of each row of a field of inverse masses; rows that are equal share one copy, which then stays in the cache.
+template <class Real>
+std::vector<const Real*> shared_rows(const Grid& grid, const Field<double>& field, std::vector<Field<Real>>& store) {
+  std::vector<const Real*> rows;
+  for (int j = 0; j < grid.rows; ++j) {
+    Field<Real> row(static_cast<std::size_t>(grid.padded_columns()), Real(0));
+    for (int i = 0; i < grid.columns; ++i) row[static_cast<std::size_t>(i)] = static_cast<Real>(field[grid.index(i, j)]);
+    const auto same = std::find(store.rbegin(), store.rend(), row);
+    rows.push_back(same != store.rend() ? same->data() : store.emplace_back(std::move(row)).data());
+  }
+  return rows;
+}
+
+int row_of(const Grid& grid, std::size_t index) {
+  return static_cast<int>((index - grid.origin()) / static_cast<std::size_t>(grid.stride()));
+}
+int column_of(const Grid& grid, std::size_t index) {
+  return static_cast<int>((index - grid.origin()) % static_cast<std::size_t>(grid.stride()));
+}
+
+// Where each row's entries begin in a list that is sorted by row.
+std::vector<int> row_begins(const Grid& grid, const std::vector<std::size_t>& sorted) {
+  std::vector<int> begins(static_cast<std::size_t>(grid.rows) + 1, 0);
+  for (const std::size_t n : sorted) ++begins[static_cast<std::size_t>(row_of(grid, n)) + 1];
+  for (std::size_t j = 1; j < begins.size(); ++j) begins[j] += begins[j - 1];
+  return begins;
+}
+
+template <class Real>
+Tables<Real> make_tables(const Model& model) {
+  const Grid& grid = model.grid;
+  Tables<Real> tables;
+  for (const ElementRow<double>& row : model.element_rows) tables.element_rows.push_back(converted<Real>(row));
+  for (const NodeRow<double>& row : model.node_rows) tables.node_rows.push_back(converted<Real>(row));
+  tables.column_weight.assign(static_cast<std::size_t>(grid.padded_columns()), Real(0));
+  std::fill_n(tables.column_weight.begin(), grid.columns, Real(1));
+  tables.column_weight.front() = tables.column_weight[static_cast<std::size_t>(grid.columns - 1)] = Real(0.5);
+  tables.inverse_mass_x = shared_rows(grid, model.inverse_mass_x, tables.inverse_masses);
+  tables.inverse_mass_z = shared_rows(grid, model.inverse_mass_z, tables.inverse_masses);
+  std::vector<std::size_t> pinned = model.pinned, pulled;
+  std::sort(pinned.begin(), pinned.end());
+  tables.pin_begin = row_begins(grid, pinned);
+  for (const std::size_t n : pinned) tables.pins.push_back(column_of(grid, n));
+  for (const Traction& traction : model.boundary.tractions) pulled.insert(pulled.end(), traction.nodes.begin(), traction.nodes.end());
+  std::sort(pulled.begin(), pulled.end());
+  pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+  tables.node_force_begin = row_begins(grid, pulled);
+  for (const std::size_t n : pulled) tables.node_forces.push_back({column_of(grid, n), Real(0), Real(0)});
+  return tables;
+}
+
+}  // namespace
+
+template <class Real>
+State<Real> make_state(const Model& model) {
+  const Grid& grid = model.grid;
+  const Field<Real> zero = grid.field<Real>();
+  State<Real> state;
+  for (Field<Real>* field : {&state.ux, &state.uz, &state.vx, &state.vz, &state.psi, &state.psi_previous}) *field = zero;
+  state.history.fill(zero);
+  for (const std::size_t n : model.pinned) state.psi[n] = state.psi_previous[n] = Real(1);
+  for (int j = 0; j < grid.cells_z() && !model.first_history.empty(); ++j)
+    for (int i = 0; i < grid.cells_x(); ++i) {
+      const Real first = static_cast<Real>(model.first_history[static_cast<std::size_t>(j * grid.cells_x() + i)]);
+      for (int corner = 0; corner < 4; ++corner) set_history(grid, state, i, j, corner, first);
+    }
   return state;
 }
 
-Scratch make_scratch(const Model& model) {
-  const Field zero = model.grid.field();
-  Scratch scratch{};
-  for (Field* field : {&scratch.source, &scratch.inverse_diagonal, &scratch.stored, &scratch.stored_before, &scratch.g, &scratch.fx,
-                       &scratch.fz, &scratch.psi_other})
+template <class Real>
+Scratch<Real> make_scratch(const Model& model) {
+  const Field<Real> zero = model.grid.field<Real>();
+  Scratch<Real> scratch;
+  scratch.tables = make_tables<Real>(model);
+  for (Field<Real>* field :
+       {&scratch.source, &scratch.inverse_diagonal, &scratch.stored, &scratch.stored_before, &scratch.fx, &scratch.fz, &scratch.psi_other})
     *field = zero;
   scratch.reduction.fill(zero);
-  scratch.row_yields.assign(static_cast<std::size_t>(model.grid.cells_z()), 0);
-  scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride()), 0.0);
+  scratch.row_yields.assign(static_cast<std::size_t>(model.grid.rows), 0);
+  scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
+  scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
   std::size_t held = 0;
   for (const Motion& motion : model.boundary.motions) held += motion.nodes.size();
   scratch.held_force.assign(held, 0.0);
   return scratch;
 }
 
-View view(const Model& model, State& state, Scratch& scratch) {
+template <class Real>
+View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) {
   const Grid& grid = model.grid;
+  const Tables<Real>& tables = scratch.tables;
   const std::size_t at = grid.origin();
-  View v{};
+  View<Real> v{};
   v.columns = grid.columns, v.rows = grid.rows, v.padded = grid.padded_columns(), v.stride = grid.stride();
-  v.hx = grid.hx, v.hz = grid.hz, v.corner_area = grid.corner_area(), v.eta = model.eta;
-  v.element_rows = model.element_rows.data(), v.node_rows = model.node_rows.data();
-  v.mass = model.mass.data() + at;
-  v.inverse_mass_x = model.inverse_mass_x.data() + at, v.inverse_mass_z = model.inverse_mass_z.data() + at;
+  v.hx = grid.hx, v.hz = grid.hz, v.corner_area = grid.corner_area(), v.eta = static_cast<Real>(model.eta);
+  v.law = model.law, v.keeps_forces = model.keeps_forces;
+  v.element_rows = tables.element_rows.data(), v.node_rows = tables.node_rows.data();
+  v.column_weight = tables.column_weight.data();
+  v.inverse_mass_x = tables.inverse_mass_x.data(), v.inverse_mass_z = tables.inverse_mass_z.data();
+  v.pin_begin = tables.pin_begin.data(), v.pins = tables.pins.data();
+  v.node_force_begin = tables.node_force_begin.data(), v.node_forces = tables.node_forces.data();
   v.ux = state.ux.data() + at, v.uz = state.uz.data() + at, v.vx = state.vx.data() + at, v.vz = state.vz.data() + at;
   for (std::size_t k = 0; k < 4; ++k) v.history[k] = state.history[k].data() + at, v.reduction[k] = scratch.reduction[k].data() + at;
   v.row_yields = scratch.row_yields.data();
   v.source = scratch.source.data() + at, v.inverse_diagonal = scratch.inverse_diagonal.data() + at;
   v.stored = scratch.stored.data() + at, v.stored_before = scratch.stored_before.data() + at;
-  v.g = scratch.g.data() + at;
   v.fx = scratch.fx.data() + at, v.fz = scratch.fz.data() + at;
   v.scratch = scratch.rows.data() + lanes;
   return v;
 }
+
+template <class Real>
+NodeForce<Real>& node_force(const Grid& grid, Tables<Real>& tables, std::size_t index) {
+  const std::size_t row = static_cast<std::size_t>(row_of(grid, index));
+  const auto begin = tables.node_forces.begin();
+  return *std::lower_bound(begin + tables.node_force_begin[row], begin + tables.node_force_begin[row + 1], column_of(grid, index),
+                           [](const NodeForce<Real>& force, int column) { return force.column < column; });
+}
+
+// A node's quadrant lies opposite to the corner of its element; at the sides the outer quadrants mirror the inner ones.
+template <class Real>
+void set_history(const Grid& grid, State<Real>& state, int column, int row, int corner, Real value) {
+  const int i = column + corner % 2;
+  const std::size_t n = grid.index(i, row + corner / 2), quadrant = static_cast<std::size_t>(3 - corner);
+  state.history[quadrant][n] = value;
+  if (i == 0 || i == grid.columns - 1) state.history[quadrant ^ 1][n] = value;
+}
+
+template <class Real>
+Real history_at(const Grid& grid, const State<Real>& state, int column, int row, int corner) {
+  return state.history[static_cast<std::size_t>(3 - corner)][grid.index(column + corner % 2, row + corner / 2)];
+}
+
+#define FRACFARM_INSTANTIATE(Real)                                               \
+  template State<Real> make_state(const Model&);                                 \
+  template Scratch<Real> make_scratch(const Model&);                             \
+  template View<Real> view(const Model&, State<Real>&, Scratch<Real>&);          \
+  template NodeForce<Real>& node_force(const Grid&, Tables<Real>&, std::size_t); \
+  template void set_history(const Grid&, State<Real>&, int, int, int, Real);     \
+  template Real history_at(const Grid&, const State<Real>&, int, int, int);
+FRACFARM_INSTANTIATE(double)
+FRACFARM_INSTANTIATE(float)
+#undef FRACFARM_INSTANTIATE
 
 }  // namespace fracfarm::phasefield

@@ -1,4 +1,4 @@
-// State: exactly what a restart needs. Scratch: everything that follows from it, allocated before the loop.
+// State: exactly what a restart needs. Scratch: everything that follows from it and the model, allocated before the loop.
 #pragma once
 
 #include <array>
@@ -11,11 +11,20 @@
 
 namespace fracfarm::phasefield {
 
+// Sums over the body after a step.
+struct StepSums {
+  StressSum stress{};    // N
+  double elastic = 0.0;  // J/m, stored with the new g
+  double kinetic = 0.0;  // J/m
+};
+
+template <class Real>
 struct State {
-  Field ux, uz;                  // m
-  Field vx, vz;                  // m/s, half a step before the displacements
-  std::array<Field, 4> history;  // H at the corners sw se nw ne of each element, J/m^3
-  Field psi, psi_previous;       // of this step and the one before (its extrapolation starts the next solve)
+  Field<Real> ux, uz;                  // m
+  Field<Real> vx, vz;                  // m/s, half a step ahead of the displacements
+  std::array<Field<Real>, 4> history;  // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
+  Field<Real> psi, psi_previous;       // of this step and the one before (its extrapolation starts the next solve)
+  StepSums sums;
   double external_work = 0.0;    // J/m since t = 0
   double released = 0.0;         // J/m since t = 0
   double initial_energy = 0.0;   // J/m before the boundary moved
@@ -23,24 +32,52 @@ struct State {
   long long sweeps = 0;          // of the psi equation since t = 0
 };
 
-enum class Stage { move, history, damage, degrade, force, ledger };
-inline constexpr std::array<const char*, 6> stage_names{"move", "history", "damage", "degrade", "force", "ledger"};
+enum class Stage { drive, damage, force, ledger };
+inline constexpr std::array<const char*, 4> stage_names{"drive", "damage", "force", "ledger"};
 
+// The model's constants as the kernels want them.
+template <class Real>
+struct Tables {
+  std::vector<ElementRow<Real>> element_rows;
+  std::vector<NodeRow<Real>> node_rows;
+  Field<Real> column_weight;
+  std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
+  std::vector<const Real*> inverse_mass_x, inverse_mass_z;
+  std::vector<int> pin_begin, pins, node_force_begin;
+  std::vector<NodeForce<Real>> node_forces;  // as of the last step
+};
+
+template <class Real>
 struct Scratch {
-  std::array<Field, 4> reduction;
+  Tables<Real> tables;
+  std::array<Field<Real>, 4> reduction;
   std::vector<unsigned char> row_yields;
-  Field source, inverse_diagonal, stored, stored_before, g, fx, fz, psi_other;
-  Field rows;                      // scratch_rows rows for the kernels
-  std::vector<double> held_force;  // force on held nodes before the step, in the order of the motions
-  StressSum stress{};              // N, after the last force
-  EnergyDrop drop{};               // of the last step
+  Field<Real> source, inverse_diagonal, stored, stored_before, fx, fz, psi_other;
+  Field<Real> rows;                           // scratch_rows rows for the kernels
+  std::vector<double> held_force;             // force on held nodes before the step, in the order of the motions
+  std::vector<double> change, change_before;  // by row: correction of its last sweep
+  double kept = 0.0;                          // J/m, energy that damage cannot release
+  double released = 0.0;                      // J/m, in the last step
   StageClock<Stage, stage_names.size()> clock{};
 };
 
-State make_state(const Model& model);
-Scratch make_scratch(const Model& model);
+template <class Real>
+State<Real> make_state(const Model& model);
+template <class Real>
+Scratch<Real> make_scratch(const Model& model);
 
 // The kernels' view of all fields.
-View view(const Model& model, State& state, Scratch& scratch);
+template <class Real>
+View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch);
+
+// The entry of a node that carries a traction, by its index in a field.
+template <class Real>
+NodeForce<Real>& node_force(const Grid& grid, Tables<Real>& tables, std::size_t index);
+
+// H at a corner (sw se nw ne) of element (column, row): in the quadrant of the node there, and mirrored outside the sides. J/m^3.
+template <class Real>
+void set_history(const Grid& grid, State<Real>& state, int column, int row, int corner, Real value);
+template <class Real>
+Real history_at(const Grid& grid, const State<Real>& state, int column, int row, int corner);
 
 }  // namespace fracfarm::phasefield

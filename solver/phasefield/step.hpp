@@ -6,13 +6,17 @@
 
 namespace fracfarm::phasefield {
 
-// Displacements (m) and velocities (m/s) at t = 0, relaxed damage around the initial cracks, forces; velocities then go back half a step.
-Result<void> start(const Model& model, const Initial& initial, State& state, Scratch& scratch, const Kernels& kernels, double dt);
+// Displacements (m) and velocities (m/s) at t = 0, relaxed damage around the initial cracks, forces; velocities then go half a step ahead.
+template <class Real>
+Result<void> start(const Model& model, const Initial& initial, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels,
+                   double dt);
 
-// From time n dt to (n + 1) dt: u -> H -> psi -> force with the new psi. Errors: SOLVER_NUMERIC.
-Result<void> step(const Model& model, State& state, Scratch& scratch, const Kernels& kernels, long long n, double dt);
+// From time n dt to (n + 1) dt: u -> H -> psi -> force with the new psi -> v. Errors: SOLVER_NUMERIC.
+template <class Real>
+Result<void> step(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n, double dt);
 
 // Scratch from a state that was just loaded, at time n dt.
-void refresh(const Model& model, State& state, Scratch& scratch, const Kernels& kernels, long long n, double dt);
+template <class Real>
+void refresh(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n, double dt);
 
 }  // namespace fracfarm::phasefield

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/phasefield/assembled/assembled.hpp"
+#include "solver/phasefield/phase_field.hpp"
 #include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
@@ -13,8 +14,9 @@ using phasefield::assembled::Assembled;
 
 namespace {
 
-// The rows' psi solve ends at 1e-8; the comparison is as fine as that allows.
-constexpr double same_psi = 1e-6, same_share = 1e-6;
+// The rows' psi solve is asked for more than in a run; the comparison is as fine as that allows.
+constexpr double fine = 1e-9;
+constexpr double same_psi = 1e-6, same_share = 5e-6;
 
 struct Ended {
   SampleRow row;
@@ -33,15 +35,16 @@ Ended after_steps(Simulation& run, double dt, int steps) {
 bool near(double a, double b, double scale) { return std::abs(a - b) <= same_share * std::abs(scale); }
 
 void check_agreement(const Scene& scene, int steps, double least_damage) {
-  const auto rows = make_phase_field(scene);
+  phasefield::PhaseField<double> rows(scene, phasefield::chosen_kernels<double>());
+  rows.model().damage_tolerance = fine;
   Assembled assembled(scene);
-  REQUIRE(rows->kernel() != assembled.kernel());
-  CHECK(rows->stable_dt() == Approx(assembled.stable_dt()).epsilon(1e-14));
-  CHECK(rows->mask() == assembled.mask());
-  const double dt = 0.9 * rows->stable_dt();
-  const Ended a = after_steps(*rows, dt, steps), b = after_steps(assembled, dt, steps);
+  REQUIRE(rows.kernel() != assembled.kernel());
+  CHECK(rows.stable_dt() == Approx(assembled.stable_dt()).epsilon(1e-14));
+  CHECK(rows.mask() == assembled.mask());
+  const double dt = 0.9 * rows.stable_dt();
+  const Ended a = after_steps(rows, dt, steps), b = after_steps(assembled, dt, steps);
   double worst = 0.0, most = 0.0;
-  const std::vector<unsigned char> mask = rows->mask();
+  const std::vector<unsigned char> mask = rows.mask();
   for (std::size_t n = 0; n < a.psi.size(); ++n) {
     worst = std::max(worst, std::abs(a.psi[n] - b.psi[n]));
     if (!mask[n]) most = std::max(most, a.psi[n]);
@@ -58,7 +61,7 @@ void check_agreement(const Scene& scene, int steps, double least_damage) {
   CHECK(near(a.row.external_work, b.row.external_work, work));
   CHECK(near(a.row.surface_energy, b.row.surface_energy, a.row.surface_energy));
   CHECK(near(a.row.crack_length, b.row.crack_length, a.row.crack_length));
-  CHECK(std::abs(a.row.released_energy - b.row.released_energy) < 2e-3 * work);  // another mean over the step
+  CHECK(std::abs(a.row.released_energy - b.row.released_energy) < 5e-3 * work);  // another mean over the step
   CHECK(std::abs(b.row.energy_residual) <= std::abs(a.row.energy_residual) + 1e-6 * work);
 }
 
@@ -85,4 +88,29 @@ TEST_CASE("assembled and row kernels agree on layers, oblong cells, tractions, r
   scene.initial.velocity_gradient = {20.0, 0.0, 5.0, 40.0};
   scene.initial.strain = {1e-5, 2e-5, -1e-5};
   check_agreement(scene, 120, 0.5);
+}
+
+TEST_CASE("assembled and row kernels agree with every split, in plane strain and in plane stress") {
+  for (const Plane plane : {Plane::strain, Plane::stress})
+    for (const Split split : {Split::none, Split::spectral, Split::volumetric_deviatoric, Split::star_convex}) {
+      Scene scene = cracked("pbx", 16);
+      scene.phase_field.split = split, scene.phase_field.plane = plane;
+      INFO(static_cast<int>(split) << " " << static_cast<int>(plane));
+      check_agreement(scene, 100, 0.5);
+    }
+}
+
+TEST_CASE("assembled and row kernels agree with AT1") {
+  Scene scene = cracked("pbx", 20);
+  scene.phase_field.surface = SurfaceModel::at1;
+  check_agreement(scene, 120, 0.5);
+}
+
+TEST_CASE("assembled and row kernels agree on cracks seeded as a row of nodes and as a history, with either surface law") {
+  for (const CrackSeeding seeding : {CrackSeeding::nodes, CrackSeeding::history})
+    for (const SurfaceModel surface : {SurfaceModel::at2, SurfaceModel::at1}) {
+      Scene scene = cracked("shale", 16);
+      scene.phase_field.crack_seeding = seeding, scene.phase_field.surface = surface;
+      check_agreement(scene, 60, 0.3);
+    }
 }

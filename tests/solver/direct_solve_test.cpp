@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/base/random.hpp"
-#include "solver/phasefield/damage_solve.hpp"
 #include "solver/phasefield/kernels.hpp"
 #include "solver/phasefield/model.hpp"
+#include "solver/phasefield/passes.hpp"
 #include "solver/phasefield/state.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -26,15 +26,16 @@ Scene layered_scene() {
 }
 
 // Corner energies from nothing to far beyond what breaks the material, the same for both methods.
-void draw_history(const Model& model, State& state) {
+void draw_history(const Model& model, State<double>& state) {
   RandomStream random(2026, 1, 0);
   for (int j = 0; j < model.grid.cells_z(); ++j)
     for (int i = 0; i < model.grid.cells_x(); ++i)
-      for (Field& corner : state.history) corner[model.grid.index(i, j)] = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 3e5);
+      for (int corner = 0; corner < 4; ++corner)
+        set_history(model.grid, state, i, j, corner, random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 3e5));
 }
 
 // G_c (psi / w_0 - w_0 lap psi) + 2 H psi = 2 H, corner quadrature, element by element; held nodes moved to the right side.
-std::vector<double> solve_directly(const Scene& scene, const Model& model, const State& state) {
+std::vector<double> solve_directly(const Scene& scene, const Model& model, const State<double>& state) {
   const Grid& grid = model.grid;
   const double area = 0.25 * grid.hx * grid.hz, across = 0.5 * grid.hz / grid.hx, along = 0.5 * grid.hx / grid.hz;
   const int nodes = grid.columns * grid.rows;
@@ -58,7 +59,7 @@ std::vector<double> solve_directly(const Scene& scene, const Model& model, const
     for (int i = 0; i < grid.cells_x(); ++i) {
       const int corners[4] = {node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j + 1)};
       for (int c = 0; c < 4; ++c) {
-        const double H = state.history[static_cast<std::size_t>(c)][grid.index(i, j)];
+        const double H = history_at(grid, state, i, j, c);
         if (held(corners[c])) continue;
         entries.emplace_back(corners[c], corners[c], area * (material.Gc / width + 2.0 * H));
         right[corners[c]] += area * 2.0 * H;
@@ -83,11 +84,11 @@ TEST_CASE("the matrix-free psi solve agrees with a direct factorisation on layer
   const Scene scene = layered_scene();
   Model model = build_model(scene);
   model.damage_tolerance = 1e-14;
-  State state = make_state(model);
-  Scratch scratch = make_scratch(model);
+  State<double> state = make_state<double>(model);
+  Scratch<double> scratch = make_scratch<double>(model);
   draw_history(model, state);
-  const Kernels& kernels = chosen_kernels();
-  kernels.update_history(view(model, state, scratch));
+  const Kernels<double>& kernels = chosen_kernels<double>();
+  strain(model, state, scratch, kernels);
   REQUIRE(solve_damage(model, state, scratch, kernels));
   const std::vector<double> direct = solve_directly(scene, model, state);
   double worst = 0.0, highest = 0.0;

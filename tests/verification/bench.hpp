@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/material/material.hpp"
-#include "solver/phasefield/damage_solve.hpp"
+#include "solver/phasefield/passes.hpp"
 #include "solver/phasefield/step.hpp"
 
 namespace fracfarm::verification {
@@ -11,18 +11,20 @@ inline constexpr double no_damage = 1e15;  // G_c at which psi stays below round
 
 struct Bench {
   phasefield::Model model;
-  phasefield::State state;
-  phasefield::Scratch scratch;
-  const phasefield::Kernels& kernels;
+  phasefield::State<double> state;
+  phasefield::Scratch<double> scratch;
+  const phasefield::Kernels<double>& kernels;
 
   explicit Bench(const Scene& scene)
-      : model(phasefield::build_model(scene)),
-        state(phasefield::make_state(model)),
-        scratch(phasefield::make_scratch(model)),
-        kernels(phasefield::chosen_kernels()) {}
+      : model(phasefield::build_model(scene)), state(phasefield::make_state<double>(model)), kernels(phasefield::chosen_kernels<double>()) {
+    model.keeps_forces = true;
+    remake();
+  }
 
-  phasefield::View view() { return phasefield::view(model, state, scratch); }
-  const double* psi() const { return state.psi.data() + model.grid.origin(); }
+  // After a change of the model.
+  void remake() { scratch = phasefield::make_scratch<double>(model); }
+
+  phasefield::View<double> view() { return phasefield::view(model, state, scratch); }
   std::size_t at(int column, int row) const { return model.grid.index(column, row); }
   double area() const { return model.grid.hx * model.grid.cells_x() * model.grid.hz * model.grid.cells_z(); }
 
@@ -42,20 +44,30 @@ struct Bench {
         state.vx[at(i, j)] = x, state.vz[at(i, j)] = z;
       }
   }
+  // H at a corner (sw se nw ne) of an element, J/m^3.
+  void set_history(int column, int row, int corner, double value) {
+    phasefield::set_history(model.grid, state, column, row, corner, value);
+  }
+  double history(int column, int row, int corner) const { return phasefield::history_at(model.grid, state, column, row, corner); }
+  phasefield::SurfaceSum surface() { return phasefield::surface(model, state, scratch, kernels); }
   // History, damage, degradation and force of the displacements as they are.
   phasefield::StressSum respond() {
-    kernels.update_history(view());
+    phasefield::strain(model, state, scratch, kernels);
     if (!phasefield::solve_damage(model, state, scratch, kernels)) return {NAN, NAN};
-    kernels.degrade(view(), psi());
-    return scratch.stress = kernels.internal_force(view());
+    state.sums = phasefield::respond(model, state, scratch, kernels, 0.0);
+    return state.sums.stress;
   }
-  // At rest with these displacements at t = 0: velocities half a step back.
+  // Displacements and velocities as they are become those of t = 0: velocities go half a step ahead.
   void release(double dt) {
-    phasefield::refresh(model, state, scratch, kernels, 0, dt);
-    for (std::size_t n = 0; n < state.vx.size(); ++n) {
-      state.vx[n] -= 0.5 * dt * scratch.fx[n] * model.inverse_mass_x[n];
-      state.vz[n] -= 0.5 * dt * scratch.fz[n] * model.inverse_mass_z[n];
-    }
+    phasefield::strain(model, state, scratch, kernels);
+    state.sums = phasefield::respond(model, state, scratch, kernels, 0.0);
+    phasefield::respond(model, state, scratch, kernels, 0.5 * dt);
+  }
+  // A step without history and damage.
+  void glide(double dt) {
+    const phasefield::View<double> v = view();
+    for (int j = 0; j < v.rows; ++j) kernels.drift(v, j, dt);
+    state.sums = phasefield::respond(model, state, scratch, kernels, dt);
   }
 };
 

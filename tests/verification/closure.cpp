@@ -35,14 +35,14 @@ Carried carried(Split split, bool cracked, double normal, double shear) {
   for (int j = 0; j <= up; ++j)
     for (const int i : {0, across})
       if (shear == 0.0) bench.model.inverse_mass_x[bench.at(i, j)] = 0.0;
+  bench.remake();
   bench.set_displacement([&](double, double z) { return std::pair{shear * z, normal * z}; });
   bench.respond();
   const double dt = 0.5 * bench.model.stable_dt;
   for (int n = 0; n < 6000; ++n) {  // relaxation: about 20 periods of the slowest mode, damped near its critical value
-    bench.kernels.move(bench.view(), dt);
-    for (phasefield::Field* v : {&bench.state.vx, &bench.state.vz})
+    bench.glide(dt);
+    for (phasefield::Field<double>* v : {&bench.state.vx, &bench.state.vz})
       for (double& value : *v) value *= 0.97;
-    bench.kernels.internal_force(bench.view());
   }
   Carried sum{};
   for (int i = 0; i <= across; ++i) sum.normal -= bench.scratch.fz[bench.at(i, up)], sum.shear -= bench.scratch.fx[bench.at(i, up)];

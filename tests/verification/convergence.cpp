@@ -30,7 +30,7 @@ void between_rollers(Scene& scene) {
 }
 
 // Values of a field at the nodes of the coarsest grid.
-std::vector<double> coarse(const Bench& bench, const phasefield::Field& field, int level) {
+std::vector<double> coarse(const Bench& bench, const phasefield::Field<double>& field, int level) {
   std::vector<double> values;
   for (int j = 0; j <= coarsest; ++j)
     for (int i = 0; i <= coarsest; ++i) values.push_back(field[bench.at(i << level, j << level)]);
@@ -73,8 +73,7 @@ Study static_damage() {
       for (int i = 0; i < cells_of(level); ++i)
         for (int corner = 0; corner < 4; ++corner) {
           const double w = wave((i + corner % 2) * h, (j + corner / 2) * h), psi = 0.4 + 0.3 * w;
-          bench.state.history[static_cast<std::size_t>(corner)][bench.at(i, j)] =
-              pbx.Gc * (psi / width + width * (a * a + b * b) * 0.3 * w) / (2.0 * (1.0 - psi));
+          bench.set_history(i, j, corner, pbx.Gc * (psi / width + width * (a * a + b * b) * 0.3 * w) / (2.0 * (1.0 - psi)));
         }
     bench.respond();
     for (int j = 0; j <= coarsest; ++j)

@@ -21,6 +21,7 @@ class HeldNodes {
         nodes_.push_back({bench.at(i, j), x, z, 0.0, 0.0});
         bench.model.inverse_mass_x[nodes_.back().index] = bench.model.inverse_mass_z[nodes_.back().index] = 0.0;
       }
+    bench.remake();
   }
 
   template <class Displacement>  // (x, z) -> {ux, uz}
@@ -29,7 +30,7 @@ class HeldNodes {
   }
   // Velocities that take the held nodes to `scale` times the shape in one step of dt.
   void aim(double scale, double dt) {
-    phasefield::State& state = bench_.state;
+    phasefield::State<double>& state = bench_.state;
     for (const Node& node : nodes_) {
       state.vx[node.index] = (scale * node.ux - state.ux[node.index]) / dt;
       state.vz[node.index] = (scale * node.uz - state.uz[node.index]) / dt;

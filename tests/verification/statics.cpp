@@ -47,6 +47,7 @@ Bench relaxed_strip(double h, std::initializer_list<int> held) {
   bench.model.damage_tolerance = tight;
   for (const int column : held)
     for (const int row : {0, 1}) bench.model.pinned.push_back(bench.at(column, row));
+  bench.remake();
   for (const std::size_t n : bench.model.pinned) bench.state.psi[n] = bench.state.psi_previous[n] = 1.0;
   bench.respond();
   return bench;
@@ -56,14 +57,15 @@ constexpr std::array<double, 4> cell_shares{0.25, 0.5, 0.984251968503937, 2.0}; 
 
 double toughness(double h, std::initializer_list<int> held) {
   Bench bench = relaxed_strip(h, held);
-  const phasefield::SurfaceSum sum = bench.kernels.surface(bench.view(), bench.psi());
+  const phasefield::SurfaceSum sum = bench.surface();
   return (sum.local + sum.gradient) / bench.model.grid.hz;
 }
 
 void fill_history(Bench& bench, RandomStream& random, double base) {
-  for (phasefield::Field& field : bench.state.history)
+  for (int corner = 0; corner < 4; ++corner)
     for (int j = 0; j < bench.model.grid.cells_z(); ++j)
-      for (int i = 0; i < bench.model.grid.cells_x(); ++i) field[bench.at(i, j)] += base * std::pow(10.0, random.uniform(-6.0, 3.0));
+      for (int i = 0; i < bench.model.grid.cells_x(); ++i)
+        bench.set_history(i, j, corner, bench.history(i, j, corner) + base * std::pow(10.0, random.uniform(-6.0, 3.0)));
 }
 
 // Uniform shear stress, uniaxial strain, and plane strain with stress-free sides: sigma of the hardening line, from the equations alone.
@@ -157,7 +159,7 @@ std::vector<Row> bounds() {
     bench.model.damage_tolerance = tight;
     fill_history(bench, random, pbx.Gc / width_of(pbx));
     bench.respond();
-    const phasefield::Field first = bench.state.psi;
+    const phasefield::Field<double> first = bench.state.psi;
     fill_history(bench, random, pbx.Gc / width_of(pbx));
     bench.respond();
     for (int j = 0; j < bench.model.grid.rows; ++j)

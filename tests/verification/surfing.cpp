@@ -24,9 +24,8 @@ void forget(Bench& bench) {
   const phasefield::Grid& grid = bench.model.grid;
   for (int j = 0; j < grid.cells_z(); ++j)
     for (int i = 0; i < grid.cells_x(); ++i)
-      for (std::size_t corner = 0; corner < 4; ++corner)
-        if (bench.state.psi[bench.at(i + static_cast<int>(corner % 2), j + static_cast<int>(corner / 2))] < 0.95)
-          bench.state.history[corner][bench.at(i, j)] = 0.0;
+      for (int corner = 0; corner < 4; ++corner)
+        if (bench.state.psi[bench.at(i + corner % 2, j + corner / 2)] < 0.95) bench.set_history(i, j, corner, 0.0);
 }
 
 // The crack begins 40 cells inside; its field moves on by 120 cells at `speed` times c_s. An odd number of cells up puts its line into a row of
@@ -59,7 +58,7 @@ Track surf(Desk& desk, bool forgets, double speed, double begin, double part) {
         const double behind = bench.state.psi[bench.at(i - 1, j)], here = bench.state.psi[bench.at(i, j)];
         if (behind > 0.9 && here <= 0.9) tip = std::max(tip, (i - 1 + (behind - 0.9) / (behind - here)) * h);
       }
-    const phasefield::SurfaceSum sum = bench.kernels.surface(bench.view(), bench.psi());
+    const phasefield::SurfaceSum sum = bench.surface();
     track.tip.push_back(tip), track.released.push_back(bench.state.released), track.surface.push_back(sum.local + sum.gradient);
   }
   return track;

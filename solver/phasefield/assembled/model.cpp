@@ -30,7 +30,11 @@ double edge_of_central_differences(const Material& material, const PhaseFieldSet
   law::Stiffness<double> C{given.C11, given.C13, given.C33, given.C55};
   if (settings.plane == Plane::stress) C = law::plane_stress(C);
   const double per_xx = 1.0 / (grid.hx * grid.hx), per_zz = 1.0 / (grid.hz * grid.hz);
-  return std::sqrt(material.density / std::max(C.C11 * per_xx + C.C55 * per_zz, C.C33 * per_zz + C.C55 * per_xx));
+  // Broken material under pressure is as stiff as the star-convex split makes it, (1 + gamma*) K.
+  const double gamma = settings.split == Split::star_convex ? settings.star_convexity : 0.0;
+  const double closed = (1.0 + gamma) * (C.C13 + 2.0 * C.C55 * (settings.plane == Plane::stress ? 1.0 / 2.0 : 1.0 / 3.0));
+  return std::sqrt(material.density /
+                   std::max({C.C11 * per_xx + C.C55 * per_zz, C.C33 * per_zz + C.C55 * per_xx, closed * std::max(per_xx, per_zz)}));
 }
 
 SideNodes side_nodes(const Model& model) {

@@ -4,51 +4,68 @@
 
 #include "solver/phasefield/kernels.hpp"
 
+#define FRACFARM_TABLE(space, Real) \
+  namespace space {                 \
+  extern const Kernels<Real> table; \
+  }
+
 namespace fracfarm::phasefield {
 
 #if defined(FRACFARM_X86_PATHS)
-namespace v4 {
-extern const Kernels table;
-}
-namespace v3 {
-extern const Kernels table;
-}
+FRACFARM_TABLE(v4_double, double)
+FRACFARM_TABLE(v4_float, float)
+FRACFARM_TABLE(v3_double, double)
+FRACFARM_TABLE(v3_float, float)
 #endif
-namespace baseline {
-extern const Kernels table;
-}
+FRACFARM_TABLE(baseline_double, double)
+FRACFARM_TABLE(baseline_float, float)
 
 namespace {
 
+template <class Real>
 struct Runnable {
-  std::array<const Kernels*, 3> tables{};
+  std::array<const Kernels<Real>*, 3> tables{};
   std::size_t count = 0;
+  void add(const Kernels<double>& in_double, const Kernels<float>& in_float) {
+    if constexpr (sizeof(Real) == sizeof(double))
+      tables[count++] = &in_double;
+    else
+      tables[count++] = &in_float;
+  }
 };
 
-Runnable probe() {
-  Runnable found;
+template <class Real>
+Runnable<Real> probe() {
+  Runnable<Real> found;
 #if defined(FRACFARM_X86_PATHS)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("x86-64-v4")) found.tables[found.count++] = &v4::table;
-  if (__builtin_cpu_supports("x86-64-v3")) found.tables[found.count++] = &v3::table;
+  if (__builtin_cpu_supports("x86-64-v4")) found.add(v4_double::table, v4_float::table);
+  if (__builtin_cpu_supports("x86-64-v3")) found.add(v3_double::table, v3_float::table);
 #endif
-  found.tables[found.count++] = &baseline::table;
+  found.add(baseline_double::table, baseline_float::table);
   return found;
 }
 
 }  // namespace
 
-std::span<const Kernels* const> runnable_kernels() {
-  static const Runnable found = probe();
+template <class Real>
+std::span<const Kernels<Real>* const> runnable_kernels() {
+  static const Runnable<Real> found = probe<Real>();
   return {found.tables.data(), found.count};
 }
 
-const Kernels& chosen_kernels() {
+template <class Real>
+const Kernels<Real>& chosen_kernels() {
   const char* wish = std::getenv("FRACFARM_ISA");
   if (wish)
-    for (const Kernels* kernels : runnable_kernels())
+    for (const Kernels<Real>* kernels : runnable_kernels<Real>())
       if (kernels->isa == wish) return *kernels;
-  return *runnable_kernels().front();
+  return *runnable_kernels<Real>().front();
 }
+
+template std::span<const Kernels<double>* const> runnable_kernels<double>();
+template std::span<const Kernels<float>* const> runnable_kernels<float>();
+template const Kernels<double>& chosen_kernels<double>();
+template const Kernels<float>& chosen_kernels<float>();
 
 }  // namespace fracfarm::phasefield

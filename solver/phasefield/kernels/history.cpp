@@ -1,114 +1,167 @@
-// H = max(H, Phi+) at the corners of each element, the stored energy around each node, and the right side of the psi equation.
-#include "solver/law/splits.hpp"
+// H = max(H, drive), the energy that damage can release, and a row of the psi equation G_c (psi/w_0 - w_0 lap psi) = 2 (1 - psi) H.
 #include "solver/phasefield/kernels/rows.hpp"
 
-namespace fracfarm::phasefield::FRACFARM_ISA {
+namespace fracfarm::phasefield::FRACFARM_KERNELS {
 namespace {
 
-// Largest q^2 of an element row.
-INLINE double largest_von_mises_squared(const View& v, const law::Secant<double>& secant, const RowPair& r) {
-  double* q2 = scratch_row(v, 0);
+// A pinned node's row becomes "psi = 1": with these two its Jacobi image is 1 to the last bit, whatever its neighbours are.
+constexpr Real pinned_source = sizeof(Real) == 8 ? Real(0x1p200) : Real(0x1p100);
+constexpr Real pinned_inverse = sizeof(Real) == 8 ? Real(0x1p-200) : Real(0x1p-100);
+
+// The four fields of a row, and what the psi equation makes of them.
+struct Row {
+  Real *sw, *se, *nw, *ne, *stored, *source, *inverse;
+  Real weight, threshold, diagonal;
+};
+
+INLINE Row row_of(const View& v, int j) {
+  const Index at = row_at(v, j);
+  const NodeRow& c = v.node_rows[j];
+  return {v.history[0] + at, v.history[1] + at,       v.history[2] + at, v.history[3] + at, v.stored + at,
+          v.source + at,     v.inverse_diagonal + at, c.weight,          c.threshold,       c.diagonal};
+}
+
+INLINE void commit(const Row& row, Index i, Real sw, Real se, Real nw, Real ne) {
+  const Real a = larger(sw, row.sw[i]), b = larger(se, row.se[i]), c = larger(nw, row.nw[i]), d = larger(ne, row.ne[i]);
+  row.sw[i] = a, row.se[i] = b, row.nw[i] = c, row.ne[i] = d;
+  const Real sum = row.weight * ((a + b) + (c + d));
+  row.source[i] = sum - row.threshold;
+  row.inverse[i] = Real(1) / (row.diagonal + sum);
+}
+
+// Half the stiffness per squared spacing, for differences of displacements. Shear is (z_e hz / hx + x_n)^2 c55.
+struct Differenced {
+  Real c11, c33, c13, c55;
+};
+
+INLINE Differenced differenced(const View& v, const ElementRow& row) {
+  const Real x = Real(1.0 / v.hx), z = Real(1.0 / v.hz), half = Real(0.5);
+  const Stiffness& C = row.stiffness;
+  return {half * C.C11 * x * x, half * C.C33 * z * z, C.C13 * x * z, half * C.C55 * z * z};
+}
+
+template <bool clips>
+INLINE Real driving(Real difference) {
+  return clips ? law::positive(difference) : difference;
+}
+
+// Linear elastic rows. The seed's drive (clipped normal strains, whole shear) or the whole energy, both from eight differences a node.
+template <bool clips>
+INLINE void elastic_history(const View& v, int j) {
+  const Row row = row_of(v, j);
+  const Around u = around(v, j);
+  const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
+  const Real c11 = n.c11 + s.c11, ratio = Real(v.hz / v.hx);
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
-    const Corners e = corner_strains(r, i);
-    q2[i] = larger(larger(law::von_mises_squared(secant, e.sw), law::von_mises_squared(secant, e.se)),
-                   larger(law::von_mises_squared(secant, e.nw), law::von_mises_squared(secant, e.ne)));
+    const Real xw = u.x[i] - u.x[i - 1], xe = u.x[i + 1] - u.x[i], xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i];
+    const Real zs = u.z[i] - u.z_south[i], zn = u.z_north[i] - u.z[i];
+    const Real zw = ratio * (u.z[i] - u.z[i - 1]), ze = ratio * (u.z[i + 1] - u.z[i]);
+    const Real gsw = zw + xs, gse = ze + xs, gnw = zw + xn, gne = ze + xn;
+    const Real shear_sw = s.c55 * (gsw * gsw), shear_se = s.c55 * (gse * gse);
+    const Real shear_nw = n.c55 * (gnw * gnw), shear_ne = n.c55 * (gne * gne);
+    row.stored[i] = (c11 * (xw * xw + xe * xe) + Real(2) * (n.c33 * (zn * zn) + s.c33 * (zs * zs))) +
+                    ((xw + xe) * (n.c13 * zn + s.c13 * zs) + ((shear_sw + shear_se) + (shear_nw + shear_ne)));
+    const Real dw = driving<clips>(xw), de = driving<clips>(xe), ds = driving<clips>(zs), dn = driving<clips>(zn);
+    const Real square_s = s.c33 * (ds * ds), square_n = n.c33 * (dn * dn), cross_s = s.c13 * ds, cross_n = n.c13 * dn;
+    commit(row, i, dw * (s.c11 * dw + cross_s) + (square_s + shear_sw), de * (s.c11 * de + cross_s) + (square_s + shear_se),
+           dw * (n.c11 * dw + cross_n) + (square_n + shear_nw), de * (n.c11 * de + cross_n) + (square_n + shear_ne));
   }
-  clear_pad(v, q2);
-  double largest = 0.0;
-#pragma omp simd reduction(max : largest)
-  for (Index i = 0; i < v.padded; ++i) largest = larger(q2[i], largest);
-  return largest;
 }
 
-INLINE void elastic_history_row(const View& v, const Stiffness& C, const RowPair& r, double* const H[4], double* const W[4]) {
-  double *H0 = H[0], *H1 = H[1], *H2 = H[2], *H3 = H[3], *W0 = W[0], *W1 = W[1], *W2 = W[2], *W3 = W[3];
+// Rows where the secant law yields: drive and potential with the reduced moduli, whose factor is kept for the force. Past yield the
+// potential is the elastic energy less (1 - h) (q - sigma_y)^2 / 6 mu, see law::stored_energy.
+template <class Split>
+INLINE Real secant_quadrant(const SecantRow& row, const Strain& e, Real& drive, Real& reduction) {
+  const Real q = std::sqrt(law::von_mises_squared(row.law, e));
+  const Real past = larger(q - row.law.yield, Real(0));
+  reduction = law::reduction(row.law, q);
+  drive = Split{reduced(row, reduction)}.drive(e);
+  return law::strain_energy(row.elastic, e) - row.excess * (past * past);
+}
+
+template <class Split>
+INLINE void secant_history(const View& v, int j) {
+  const Row row = row_of(v, j);
+  const Around u = around(v, j);
+  const SecantRow n = secant_row(v.element_rows[j + 1]), s = secant_row(v.element_rows[j]);
+  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
+  const Index at = row_at(v, j);
+  Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
-    const Corners e = corner_strains(r, i);
-    H0[i] = larger(law::SeedSplit<double>{C}.drive(e.sw), H0[i]);
-    H1[i] = larger(law::SeedSplit<double>{C}.drive(e.se), H1[i]);
-    H2[i] = larger(law::SeedSplit<double>{C}.drive(e.nw), H2[i]);
-    H3[i] = larger(law::SeedSplit<double>{C}.drive(e.ne), H3[i]);
-    W0[i] = law::strain_energy(C, e.sw);
-    W1[i] = law::strain_energy(C, e.se);
-    W2[i] = law::strain_energy(C, e.nw);
-    W3[i] = law::strain_energy(C, e.ne);
+    const Quadrants e = strains(u, i, per_hx, per_hz);
+    Real sw, se, nw, ne;
+    const Real w_sw = secant_quadrant<Split>(s, e.sw, sw, r0[i]), w_se = secant_quadrant<Split>(s, e.se, se, r1[i]);
+    const Real w_nw = secant_quadrant<Split>(n, e.nw, nw, r2[i]), w_ne = secant_quadrant<Split>(n, e.ne, ne, r3[i]);
+    row.stored[i] = (w_sw + w_se) + (w_nw + w_ne);
+    commit(row, i, sw, se, nw, ne);
   }
 }
 
-INLINE void secant_corner(const law::Secant<double>& secant, const Strain& e, double& H, double& W, double& s) {
-  const double q = __builtin_sqrt(law::von_mises_squared(secant, e));
-  s = law::reduction(secant, q);
-  H = larger(law::SeedSplit<double>{law::reduced_stiffness(secant, s)}.drive(e), H);
-  W = law::stored_energy(secant, e, q);
+INLINE bool yields(const View& v, int j) {
+  const ElementRow &above = v.element_rows[j + 1], &below = v.element_rows[j];
+  if (!above.plastic && !below.plastic) return false;
+  const Around u = around(v, j);
+  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
+  const Secant n = above.secant, s = below.secant;
+  Real north = Real(0), south = Real(0);
+#pragma omp simd reduction(max : north, south)
+  for (Index i = 0; i < v.columns; ++i) {
+    const Quadrants e = strains(u, i, per_hx, per_hz);
+    north = larger(larger(law::von_mises_squared(n, e.nw), law::von_mises_squared(n, e.ne)), north);
+    south = larger(larger(law::von_mises_squared(s, e.sw), law::von_mises_squared(s, e.se)), south);
+  }
+  return (above.plastic && north > n.yield * n.yield) || (below.plastic && south > s.yield * s.yield);
 }
 
-INLINE void secant_history_row(const View& v, const law::Secant<double>& secant, const RowPair& r, double* const H[4], double* const W[4],
-                               double* const S[4]) {
-  double *H0 = H[0], *H1 = H[1], *H2 = H[2], *H3 = H[3], *W0 = W[0], *W1 = W[1], *W2 = W[2], *W3 = W[3];
-  double *S0 = S[0], *S1 = S[1], *S2 = S[2], *S3 = S[3];
+// Splits that keep a part of the energy: its sum over the row, J/m.
+template <class Law>
+INLINE double split_history(const View& v, int j) {
+  const Row row = row_of(v, j);
+  const Around u = around(v, j);
+  const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
+  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
+  Real* kept = scratch_row(v, first_free_row);
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
-    const Corners e = corner_strains(r, i);
-    secant_corner(secant, e.sw, H0[i], W0[i], S0[i]);
-    secant_corner(secant, e.se, H1[i], W1[i], S1[i]);
-    secant_corner(secant, e.nw, H2[i], W2[i], S2[i]);
-    secant_corner(secant, e.ne, H3[i], W3[i], S3[i]);
+    const Quadrants e = strains(u, i, per_hx, per_hz);
+    row.stored[i] = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
+    kept[i] = v.column_weight[i] * ((s.kept_energy(e.sw) + s.kept_energy(e.se)) + (n.kept_energy(e.nw) + n.kept_energy(e.ne)));
+    commit(row, i, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
   }
+  return v.corner_area * ordered_sum(kept, v.padded);
 }
 
-// Corner energies of an element row, by the node they belong to: added to the lower row, put into the upper.
-INLINE void gather_stored(const View& v, int j, double* const W[4]) {
-  double *lower = v.stored + Index(j) * v.stride, *upper = lower + v.stride;
-  for (int k = 0; k < 4; ++k) clear_pad(v, W[k]);
-  const double *sw = W[0], *se = W[1], *nw = W[2], *ne = W[3];
-  const double area = v.corner_area;
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    lower[i] = lower[i] + area * (sw[i] + se[i - 1]);
-    upper[i] = area * (nw[i] + ne[i - 1]);
+INLINE double history_row(const View& v, int j) {
+  switch (v.law) {
+    case RowLaw::seed:
+      if ((v.row_yields[j] = yields(v, j)))
+        secant_history<law::SeedSplit<Real>>(v, j);
+      else
+        elastic_history<true>(v, j);
+      return 0.0;
+    case RowLaw::none:
+      if ((v.row_yields[j] = yields(v, j)))
+        secant_history<law::NoSplit<Real>>(v, j);
+      else
+        elastic_history<false>(v, j);
+      return 0.0;
+    case RowLaw::spectral:
+      return split_history<law::SpectralSplit<Real>>(v, j);
+    case RowLaw::star_convex:
+      return split_history<law::StarConvexSplit<Real>>(v, j);
   }
-}
-
-INLINE void history_row(const View& v, int j) {
-  const ElementRow& row = v.element_rows[j];
-  const RowPair r = row_pair(v, j);
-  const Index at = Index(j) * v.stride;
-  double* const H[4] = {v.history[0] + at, v.history[1] + at, v.history[2] + at, v.history[3] + at};
-  double* const W[4] = {scratch_row(v, 1), scratch_row(v, 2), scratch_row(v, 3), scratch_row(v, 4)};
-  v.row_yields[j] = row.plastic && largest_von_mises_squared(v, row.secant, r) > row.secant.yield * row.secant.yield;
-  if (v.row_yields[j]) {
-    double* const S[4] = {v.reduction[0] + at, v.reduction[1] + at, v.reduction[2] + at, v.reduction[3] + at};
-    secant_history_row(v, row.secant, r, H, W, S);
-  } else {
-    elastic_history_row(v, row.stiffness, r, H, W);
-  }
-  gather_stored(v, j, W);
-}
-
-// Right side of the psi equation at a node row: the four corners around a node, mirrored at the sides.
-INLINE void source_row(const View& v, int j) {
-  const bool bottom = j == 0, top = j == v.rows - 1;
-  const Index above = Index(top ? j - 1 : j) * v.stride, below = Index(bottom ? j : j - 1) * v.stride;
-  const double *sw = v.history[top ? 2 : 0] + above, *se = v.history[top ? 3 : 1] + above;
-  const double *nw = v.history[bottom ? 0 : 2] + below, *ne = v.history[bottom ? 1 : 3] + below;
-  double* source = v.source + Index(j) * v.stride;
-  const double weight = 2.0 * v.corner_area;
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) source[i] = weight * ((sw[i] + se[i - 1]) + (nw[i] + ne[i - 1]));
-  const Index last = v.columns - 1;
-  source[0] = 2.0 * weight * (sw[0] + nw[0]);
-  source[last] = 2.0 * weight * (se[last - 1] + ne[last - 1]);
-  for (Index i = v.columns; i < v.padded; ++i) source[i] = 0.0;
+  return 0.0;
 }
 
 }  // namespace
 
-void update_history(const View& v) {
-  for (Index i = 0; i < v.padded; ++i) v.stored[i] = 0.0;
-  for (int j = 0; j + 1 < v.rows; ++j) history_row(v, j);
-  for (int j = 0; j < v.rows; ++j) source_row(v, j);
+double history(const View& v, int j) {
+  const double kept = history_row(v, j);
+  Real *source = v.source + row_at(v, j), *inverse = v.inverse_diagonal + row_at(v, j);
+  for (int k = v.pin_begin[j]; k < v.pin_begin[j + 1]; ++k) source[v.pins[k]] = pinned_source, inverse[v.pins[k]] = pinned_inverse;
+  return kept;
 }
 
-}  // namespace fracfarm::phasefield::FRACFARM_ISA
+}  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -1,61 +1,111 @@
-// What the kernels share: strains at the corners of an element row, ordered sums, scratch rows. Included by the kernels only, which are
-// compiled once for each instruction set; everything is inlined, so that no instruction of a higher set leaks into shared code. Corners of
-// an element: sw se nw ne; the strain at a corner uses the two sides of the element that meet there (Gauss-Lobatto corner quadrature).
+// What the kernels share: the row of nodes with its neighbours, strains in its quadrants, ordered sums, scratch rows. Included by the
+// kernels only, which are compiled once for each instruction set and number type; everything is inlined, so that no instruction of a higher
+// set leaks into shared code.
 #pragma once
 
+#include <cmath>
+
+#include "solver/law/splits.hpp"
 #include "solver/phasefield/grid.hpp"
 #include "solver/phasefield/kernels.hpp"
 
 #define INLINE [[gnu::always_inline]] inline
 
-namespace fracfarm::phasefield::FRACFARM_ISA {
+namespace fracfarm::phasefield::FRACFARM_KERNELS {
 
-using Stiffness = law::Stiffness<double>;
-using Strain = law::Strain<double>;
-using Stress = law::Stress<double>;
+using Real = FRACFARM_REAL;
+using View = phasefield::View<Real>;
+using ElementRow = phasefield::ElementRow<Real>;
+using NodeRow = phasefield::NodeRow<Real>;
+using Stiffness = law::Stiffness<Real>;
+using Secant = law::Secant<Real>;
+using Strain = law::Strain<Real>;
+using Stress = law::Stress<Real>;
 using Index = long;
 
-struct Corners {
+INLINE Index row_at(const View& v, int j) { return Index(j) * v.stride; }
+INLINE Real larger(Real a, Real b) { return a > b ? a : b; }
+INLINE Real smaller(Real a, Real b) { return a < b ? a : b; }
+INLINE Real magnitude(Real a) { return a < Real(0) ? -a : a; }
+
+// Displacements around a row of nodes.
+struct Around {
+  const Real *x, *x_south, *x_north, *z, *z_south, *z_north;
+};
+
+INLINE Around around(const View& v, int j) {
+  const Real *x = v.ux + row_at(v, j), *z = v.uz + row_at(v, j);
+  return {x, x - v.stride, x + v.stride, z, z - v.stride, z + v.stride};
+}
+
+struct Quadrants {
   Strain sw, se, nw, ne;
 };
 
-// Displacements of the two node rows of an element row.
-struct RowPair {
-  const double *ux0, *uz0, *ux1, *uz1;
-  double per_hx, per_hz;
-};
-
-INLINE RowPair row_pair(const View& v, int j) {
-  const Index at = Index(j) * v.stride;
-  return {v.ux + at, v.uz + at, v.ux + at + v.stride, v.uz + at + v.stride, 1.0 / v.hx, 1.0 / v.hz};
+INLINE Quadrants strains(const Around& u, Index i, Real per_hx, Real per_hz) {
+  const Real xx_w = (u.x[i] - u.x[i - 1]) * per_hx, xx_e = (u.x[i + 1] - u.x[i]) * per_hx;
+  const Real zx_w = (u.z[i] - u.z[i - 1]) * per_hx, zx_e = (u.z[i + 1] - u.z[i]) * per_hx;
+  const Real zz_s = (u.z[i] - u.z_south[i]) * per_hz, zz_n = (u.z_north[i] - u.z[i]) * per_hz;
+  const Real xz_s = (u.x[i] - u.x_south[i]) * per_hz, xz_n = (u.x_north[i] - u.x[i]) * per_hz;
+  return {{xx_w, zz_s, xz_s + zx_w}, {xx_e, zz_s, xz_s + zx_e}, {xx_w, zz_n, xz_n + zx_w}, {xx_e, zz_n, xz_n + zx_e}};
 }
-
-INLINE Corners corner_strains(const RowPair& r, Index i) {
-  const double xx_south = (r.ux0[i + 1] - r.ux0[i]) * r.per_hx, xx_north = (r.ux1[i + 1] - r.ux1[i]) * r.per_hx;
-  const double zz_west = (r.uz1[i] - r.uz0[i]) * r.per_hz, zz_east = (r.uz1[i + 1] - r.uz0[i + 1]) * r.per_hz;
-  const double zx_south = (r.uz0[i + 1] - r.uz0[i]) * r.per_hx, zx_north = (r.uz1[i + 1] - r.uz1[i]) * r.per_hx;
-  const double xz_west = (r.ux1[i] - r.ux0[i]) * r.per_hz, xz_east = (r.ux1[i + 1] - r.ux0[i + 1]) * r.per_hz;
-  return {{xx_south, zz_west, xz_west + zx_south},
-          {xx_south, zz_east, xz_east + zx_south},
-          {xx_north, zz_west, xz_west + zx_north},
-          {xx_north, zz_east, xz_east + zx_north}};
-}
-
-INLINE double larger(double a, double b) { return a > b ? a : b; }
 
 // Sum of n (a multiple of `lanes`) numbers: `lanes` partial sums, then pairs.
-INLINE double ordered_sum(const double* __restrict x, Index n) {
-  double part[lanes] = {};
+INLINE double ordered_sum(const Real* __restrict x, Index n) {
+  Real part[lanes] = {};
   for (Index i = 0; i < n; i += lanes)
     for (int l = 0; l < lanes; ++l) part[l] += x[i + l];
-  return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
+  for (int half = lanes / 2; half > 0; half /= 2)
+    for (int l = 0; l < half; ++l) part[l] += part[l + half];
+  return part[0];
 }
 
-INLINE double* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
+INLINE Real* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
 
-// Element results of a row end at the last element: what the padded loop left behind it must not count.
-INLINE void clear_pad(const View& v, double* row) {
-  for (Index i = v.columns - 1; i < v.padded; ++i) row[i] = 0.0;
+// What the quadrants of node row j give to the forces, kept until the rows around it are kicked: `north` and `south` act on the edges to
+// the rows above and below, `part` is the rest of the row's own force. Four rows of it go round.
+struct HalfEdges {
+  Real *north_x, *north_z, *south_x, *south_z, *part_x, *part_z;
+};
+inline constexpr int half_edge_rows = 6, first_free_row = 4 * half_edge_rows;
+
+INLINE HalfEdges half_edges(const View& v, int j) {
+  const int k = ((j + 4) % 4) * half_edge_rows;
+  return {scratch_row(v, k),     scratch_row(v, k + 1), scratch_row(v, k + 2),
+          scratch_row(v, k + 3), scratch_row(v, k + 4), scratch_row(v, k + 5)};
 }
 
-}  // namespace fracfarm::phasefield::FRACFARM_ISA
+// The secant law of a row beside rows of any other: linear elastic (mu = 0 in `law`) where the row does not yield at all.
+struct SecantRow {
+  Stiffness elastic;
+  Secant law;
+  Real excess;  // (1 - hardening share) / 6 mu
+};
+
+INLINE SecantRow secant_row(const ElementRow& row) {
+  const Real mu = row.secant.mu;
+  return {row.stiffness, row.secant, mu > Real(0) ? (Real(1) - row.secant.hardening_share) / (Real(6) * mu) : Real(0)};
+}
+
+// Moduli with mu -> s mu and the bulk modulus kept.
+INLINE Stiffness reduced(const SecantRow& row, Real s) {
+  const Real lost = (Real(1) - s) * row.law.mu;
+  return {row.elastic.C11 - Real(4.0 / 3.0) * lost, row.elastic.C13 + Real(2.0 / 3.0) * lost, row.elastic.C33 - Real(4.0 / 3.0) * lost,
+          row.elastic.C55 - lost};
+}
+
+// Laws of the general rows, made of an element row's constants.
+template <class Law>
+struct LawOf;
+template <>
+struct LawOf<law::SpectralSplit<Real>> {
+  INLINE static law::SpectralSplit<Real> make(const ElementRow& row) { return {row.lambda, row.mu}; }
+};
+template <>
+struct LawOf<law::StarConvexSplit<Real>> {
+  INLINE static law::StarConvexSplit<Real> make(const ElementRow& row) {
+    return {row.lambda + Real(2) * row.mu * row.per_dimensions, row.mu, row.per_dimensions, row.star_convexity};
+  }
+};
+
+}  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -1,23 +1,22 @@
-// The table of one instruction set's kernels.
-#include "solver/phasefield/kernels.hpp"
+// The table of one instruction set's kernels for one number type.
+#include "solver/phasefield/kernels/rows.hpp"
 
-namespace fracfarm::phasefield::FRACFARM_ISA {
+namespace fracfarm::phasefield::FRACFARM_KERNELS {
 
-void move(const View&, double dt);
-void update_history(const View&);
-void set_diagonal(const View&);
-void extrapolate(const View&, const double* psi, double* previous, double* other);
-double sweep(const View&, const double* psi, double* other, double omega);
-EnergyDrop degrade(const View&, const double* psi);
-StressSum internal_force(const View&);
-double kinetic(const View&, double half_dt);
-SurfaceSum surface(const View&, const double* psi);
+void drift(const View&, int j, Real dt);
+double history(const View&, int j);
+void guess(const View&, int j, const Real* psi, Real* previous);
+double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool last);
+double settle(const View&, int j, Real* psi);
+RowSums force(const View&, int j, const Real* psi, const Real* before);
+double kick(const View&, int j, Real dt);
+void forget(const View&, int j);
+SurfaceSum surface(const View&, int j, const Real* psi);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
-extern const Kernels table;
-const Kernels table{
-    FRACFARM_TEXT(FRACFARM_ISA), move, update_history, set_diagonal, extrapolate, sweep, degrade, internal_force, kinetic, surface};
+extern const Kernels<Real> table;
+const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), drift, history, guess, sweep, settle, force, kick, forget, surface};
 
-}  // namespace fracfarm::phasefield::FRACFARM_ISA
+}  // namespace fracfarm::phasefield::FRACFARM_KERNELS

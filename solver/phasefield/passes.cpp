@@ -1,0 +1,203 @@
+#include "solver/phasefield/passes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fracfarm::phasefield {
+namespace {
+
+// Weights of the Chebyshev semi-iteration for a spectrum in [-radius, radius] (Golub and Varga, 1961).
+class ChebyshevWeight {
+ public:
+  explicit ChebyshevWeight(double radius) : square_(radius * radius) {}
+  double next() {
+    const double given = weight_;
+    weight_ = first_ ? 1.0 / (1.0 - 0.5 * square_) : 1.0 / (1.0 - 0.25 * square_ * weight_);
+    first_ = false;
+    return given;
+  }
+
+ private:
+  double square_;
+  double weight_ = 1.0;
+  bool first_ = true;
+};
+
+constexpr int local_rounds = 32;  // of unsettled rows alone; what takes longer is left to Chebyshev
+
+// The sweeps of one solve: they go to and fro between the guess, which stands in psi_previous, and another field.
+template <class Real>
+class Sweeps {
+ public:
+  Sweeps(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels)
+      : state_(state),
+        scratch_(scratch),
+        kernels_(kernels),
+        tolerance_(model.damage_tolerance),
+        radius_(model.jacobi_radius),
+        weight_(radius_) {
+    const std::size_t at = model.grid.origin();
+    fields_ = {state.psi_previous.data() + at, scratch.psi_other.data() + at};
+  }
+
+  // One more sweep over the rows, to be done row by row.
+  void begin(bool last) {
+    omega_[count_ % omega_.size()] = static_cast<Real>(weight_.next());
+    last_ = last ? count_ : most_damage_sweeps;
+    ++count_;
+  }
+  void row(const View<Real>& v, std::size_t sweep, int j) {
+    const double change = kernels_.sweep(v, j, fields_[sweep % 2], fields_[1 - sweep % 2], omega_[sweep % omega_.size()], sweep == last_);
+    if (sweep == last_) scratch_.change[static_cast<std::size_t>(j)] = change;
+  }
+
+  // More sweeps until every row is settled: of the unsettled rows and their neighbours where these are few, else of the whole grid.
+  Result<void> settle(const View<Real>& v) {
+    int rounds = 0;
+    for (int unsettled = count_unsettled(); unsettled > 0; unsettled = count_unsettled(), ++rounds) {
+      if (rounds >= damage_sweeps_limit) return trouble();
+      if (rounds < local_rounds && 4 * unsettled < v.rows)
+        settle_rows(v);
+      else
+        sweep_grid(v);
+    }
+    return keep();
+  }
+
+ private:
+  int count_unsettled() const {
+    return static_cast<int>(std::count_if(scratch_.change.begin(), scratch_.change.end(), [&](double c) { return !(c <= tolerance_); }));
+  }
+  void settle_rows(const View<Real>& v) {
+    std::vector<double>& change = scratch_.change;
+    scratch_.change_before = change;
+    ++state_.sweeps;
+    for (int j = 0; j < v.rows; ++j)
+      if (moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
+    stale_ = true;
+  }
+  void sweep_grid(const View<Real>& v) {
+    if (std::exchange(stale_, false)) weight_ = ChebyshevWeight(radius_);  // a new iteration: its first sweep needs one field only
+    begin(true);
+    for (int j = 0; j < v.rows; ++j) row(v, count_ - 1, j);
+  }
+  bool moved_near(int j, int rows) const {
+    const double* change = scratch_.change_before.data() + j;
+    return !(change[0] <= tolerance_) || (j > 0 && !(change[-1] <= tolerance_)) || (j + 1 < rows && !(change[1] <= tolerance_));
+  }
+  // The fields take their places.
+  Result<void> keep() {
+    if (count_ % 2 == 1) std::swap(state_.psi_previous, scratch_.psi_other);
+    std::swap(state_.psi, state_.psi_previous);
+    state_.sweeps += static_cast<long long>(count_);
+    return {};
+  }
+  tl::unexpected<Error> trouble() const {
+    return fail(Fault::solver_numeric,
+                fmt::format("the phase-field equation did not converge: correction {:.1e} after {} sweeps, limit {:.1e}",
+                            *std::max_element(scratch_.change.begin(), scratch_.change.end()), damage_sweeps_limit, tolerance_));
+  }
+
+  State<Real>& state_;
+  Scratch<Real>& scratch_;
+  const Kernels<Real>& kernels_;
+  double tolerance_;
+  double radius_;
+  ChebyshevWeight weight_;
+  bool stale_ = false;  // rows were settled since the last sweep of the grid
+  std::array<Real*, 2> fields_{};
+  std::array<Real, most_damage_sweeps> omega_{};
+  std::size_t count_ = 0;
+  std::size_t last_ = 0;
+};
+
+}  // namespace
+
+template <class Real>
+Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt) {
+  std::swap(scratch.stored, scratch.stored_before);
+  const View<Real> v = view(model, state, scratch);
+  const std::size_t at = model.grid.origin();
+  const Real *psi = state.psi.data() + at, step = static_cast<Real>(dt);
+  Real* previous = state.psi_previous.data() + at;
+  Sweeps<Real> sweeps(model, state, scratch, kernels);
+  const int count = model.damage_sweeps;
+  for (int k = 0; k < count; ++k) sweeps.begin(k + 1 == count);
+  scratch.kept = 0.0;
+  for (int front = 0; front < v.rows + count; ++front) {
+    if (front < v.rows) {
+      kernels.drift(v, front, step);
+      kernels.guess(v, front, psi, previous);
+    }
+    if (front >= 1 && front <= v.rows) scratch.kept += kernels.history(v, front - 1);
+    for (int k = 0; k < count; ++k)
+      if (const int j = front - 1 - k; j >= 0 && j < v.rows) sweeps.row(v, static_cast<std::size_t>(k), j);
+  }
+  return sweeps.settle(v);
+}
+
+template <class Real>
+void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  for (int j = 0; j < v.rows; ++j) kernels.drift(v, j, Real(0));  // places the ghosts
+  scratch.kept = 0.0;
+  for (int j = 0; j < v.rows; ++j) scratch.kept += kernels.history(v, j);
+}
+
+template <class Real>
+Result<void> solve_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  const std::size_t at = model.grid.origin();
+  for (int j = 0; j < v.rows; ++j) kernels.guess(v, j, state.psi.data() + at, state.psi_previous.data() + at);
+  std::fill(scratch.change.begin(), scratch.change.end(), INFINITY);
+  return Sweeps<Real>(model, state, scratch, kernels).settle(v);
+}
+
+template <class Real>
+StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt) {
+  const View<Real> v = view(model, state, scratch);
+  const std::size_t at = model.grid.origin();
+  const Real *psi = state.psi.data() + at, *before = state.psi_previous.data() + at, step = static_cast<Real>(dt);
+  StepSums sums;
+  sums.elastic = scratch.kept;
+  scratch.released = 0.0;
+  kernels.forget(v, -1);
+  for (int front = 0; front <= v.rows; ++front) {
+    if (front < v.rows) {
+      const RowSums row = kernels.force(v, front, psi, before);
+      scratch.released += row.released;
+      sums.elastic += row.elastic;
+      sums.stress.xx += row.stress.xx, sums.stress.zz += row.stress.zz;
+    } else {
+      kernels.forget(v, front);
+    }
+    if (front > 0) sums.kinetic += kernels.kick(v, front - 1, step);
+  }
+  return sums;
+}
+
+template <class Real>
+SurfaceSum surface(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  SurfaceSum sum{0.0, 0.0, 0.0};
+  for (int j = 0; j + 1 < v.rows; ++j) {
+    const SurfaceSum row = kernels.surface(v, j, state.psi.data() + model.grid.origin());
+    sum.local += row.local, sum.gradient += row.gradient, sum.length += row.length;
+  }
+  return sum;
+}
+
+#define FRACFARM_INSTANTIATE(Real)                                                                                 \
+  template Result<void> move_and_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double); \
+  template void strain(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                          \
+  template Result<void> solve_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);            \
+  template StepSums respond(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double);             \
+  template SurfaceSum surface(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);
+FRACFARM_INSTANTIATE(double)
+FRACFARM_INSTANTIATE(float)
+#undef FRACFARM_INSTANTIATE
+
+}  // namespace fracfarm::phasefield

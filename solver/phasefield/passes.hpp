@@ -1,0 +1,35 @@
+// Which row when: the passes over the grid that make up a step. A pass goes through the rows once and does on each all that its neighbours
+// allow, so that a row is worked on while it is in the cache; the numbers are those of one loop after the other.
+#pragma once
+
+#include "common/base/result.hpp"
+#include "solver/phasefield/state.hpp"
+
+namespace fracfarm::phasefield {
+
+inline constexpr int damage_sweeps_limit = 1000;
+
+// u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then more sweeps of those rows
+// alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their neighbours. The
+// corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution; what the sweeps leave beyond is cut. Replaces
+// psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
+template <class Real>
+Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt);
+
+// Energies and the psi equation of u as it is.
+template <class Real>
+void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
+
+// psi of the equation as it is; as in move_and_damage.
+template <class Real>
+Result<void> solve_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
+
+// Degradation, forces with the new psi, v += dt f / m; returns the sums, and leaves scratch.released.
+template <class Real>
+StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt);
+
+// Surface functional of psi.
+template <class Real>
+SurfaceSum surface(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
+
+}  // namespace fracfarm::phasefield
