@@ -12,7 +12,7 @@ namespace {
 // Else a pass only has to be finer than what the damage changes.
 constexpr double exact = 1e-15, newmark_tolerance = 1e-10, quasi_static_tolerance = 1e-8;
 constexpr double at_rest = 1e-9;    // a step that moves psi by less leaves the factor as good as new
-constexpr double reduction = 1e-3;  // of the residual, in the later passes of a step
+constexpr double reduction = 3e-2;  // of the residual, in the later passes of a step
 
 double tolerance_after(const State& state, double while_damaging) {
   return (state.psi - state.psi_previous).cwiseAbs().maxCoeff() > at_rest ? while_damaging : exact;
