@@ -73,7 +73,8 @@ double fastest(const Fork& fork) {
   std::size_t back = 0;
   for (std::size_t k = 0; k < fork.tip.size(); ++k) {
     while (fork.tip[k] - fork.tip[back + 1] > 4e-3) ++back;
-    if (fork.tip[back] > 0.052 && fork.tip[k] - fork.tip[back] > 4e-3) most = std::max(most, (fork.tip[k] - fork.tip[back]) / (fork.time[k] - fork.time[back]));
+    if (fork.tip[back] > 0.052 && fork.tip[k] - fork.tip[back] > 4e-3)
+      most = std::max(most, (fork.tip[k] - fork.tip[back]) / (fork.time[k] - fork.time[back]));
   }
   return most;
 }
@@ -104,7 +105,11 @@ std::vector<Row> branching(Desk& desk) {
   std::vector<Row> rows;
   std::vector<Damage> panels;
   Chart tips{"Tip of the crack", {"time", "s"}, {"x", "m"}, {}};
-  for (const Run& run : {Run{"h = l/2", 400, 0.9}, Run{"h = l/4", 800, 0.9}, Run{"h = l/4, dt/2", 800, 0.45}, Run{"h = l/8", 1600, 0.9}}) {
+  double done = 0.0;
+  for (const Run& run : {Run{"h = l/2", 400, 0.9}, Run{"h = l/2, dt/2", 400, 0.45}, Run{"h = l/3", 600, 0.9}, Run{"h = l/4", 800, 0.9}}) {
+    const double share = std::pow(run.cells / 800.0, 3.0) * 0.9 / run.cfl / 1.8;
+    desk.part(done, share);
+    done += share;
     const Fork fork = run_plate(desk, plate(run.cells, run.cfl), run.name);
     const std::string at = std::string(run.name) + ": ";
     rows.push_back(between(at + "time at which the tip forks", "s", {35e-6, 37e-6}, fork.onset, 0.0));

@@ -46,23 +46,28 @@ struct Case {
 
 std::span<const Case> cases();
 
-std::vector<Row> homogeneous_peak();     // PF-1
-std::vector<Row> static_profile();       // PF-2
-std::vector<Row> discrete_toughness();   // PF-3
-std::vector<Row> bounds();               // PF-4
-std::vector<Row> dispersion();           // PF-5
+std::vector<Row> homogeneous_peak();    // PF-1
+std::vector<Row> static_profile();      // PF-2
+std::vector<Row> discrete_toughness();  // PF-3
+std::vector<Row> bounds();              // PF-4
+std::vector<Row> dispersion();          // PF-5
+std::vector<Row> newmark_dispersion();
 std::vector<Row> stability_edge();       // PF-6
 std::vector<Row> energy_conservation();  // PF-7
-std::vector<Row> impedance();            // PF-8
+std::vector<Row> newmark_energy();
+std::vector<Row> impedance();              // PF-8
 std::vector<Row> rotation_of_laws(Desk&);  // PF-9
 std::vector<Row> rotation(Desk&);
-std::vector<Row> closure(Desk&);         // PF-10
-std::vector<Row> convergence(Desk&);     // PF-11
-std::vector<Row> hardening_curve();      // PF-12
-std::vector<Row> surfing(Desk&);         // PF-25
-std::vector<Row> branching(Desk&);       // PF-30
-std::vector<Row> straight_crack(Desk&);  // PF-40
-std::vector<Row> inclined_crack(Desk&);  // PF-41
-std::vector<Row> two_flaws(Desk&);       // PF-42
+std::vector<Row> closure(Desk&);      // PF-10
+std::vector<Row> convergence(Desk&);  // PF-11
+std::vector<Row> hardening_curve();   // PF-12
+std::vector<Row> hardening_curve_j2();
+std::vector<Row> notched_tension(Desk&);  // PF-20
+std::vector<Row> notched_shear(Desk&);    // PF-21
+std::vector<Row> surfing(Desk&);          // PF-25
+std::vector<Row> branching(Desk&);        // PF-30
+std::vector<Row> straight_crack(Desk&);   // PF-40
+std::vector<Row> inclined_crack(Desk&);   // PF-41
+std::vector<Row> two_flaws(Desk&);        // PF-42
 
 }  // namespace fracfarm::verification

@@ -101,15 +101,18 @@ Bench run_waves(const Material& material, const Waves& waves, int level, double 
   between_rollers(scene);
   Bench bench(scene);
   bench.model.damage_tolerance = 1e-11;
-  if (push > 0.0) bench.set_velocity([&](double x, double z) { return waves.at(x, z, push, push); });
-  else bench.set_displacement([&](double x, double z) { return waves.at(x, z); });
-  const int steps = static_cast<int>(std::ceil(time / (0.9 * side / coarsest / std::sqrt((material.elasticity.C11 + material.elasticity.C55) /
-                                                                                        material.density))))
+  if (push > 0.0)
+    bench.set_velocity([&](double x, double z) { return waves.at(x, z, push, push); });
+  else
+    bench.set_displacement([&](double x, double z) { return waves.at(x, z); });
+  const int steps = static_cast<int>(std::ceil(
+                        time / (0.9 * side / coarsest / std::sqrt((material.elasticity.C11 + material.elasticity.C55) / material.density))))
                     << level;
   const double dt = time / steps;
   bench.release(dt);
   for (int n = 0; n < steps; ++n)
-    if (!phasefield::step(bench.model, bench.state, bench.scratch, bench.kernels, n, dt)) bench.state.psi.assign(bench.state.psi.size(), NAN);
+    if (!phasefield::step(bench.model, bench.state, bench.scratch, bench.kernels, n, dt))
+      bench.state.psi.assign(bench.state.psi.size(), NAN);
   return bench;
 }
 

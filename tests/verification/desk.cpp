@@ -6,7 +6,8 @@
 
 namespace fracfarm::verification {
 
-void Desk::progress(std::string_view what, double share) {
+void Desk::progress(std::string_view what, double share_of_part) {
+  const double share = begin_ + length_ * share_of_part;
   const double now = clock_.monotonic_s();
   if (now - last_s_ < 0.25 || now - start_s_ < 1.0) return;
   last_s_ = now;

@@ -23,6 +23,8 @@ class Desk {
 
   // What is being done and how much of the case is done, 0 ... 1. Cheap enough to be called every few steps.
   void progress(std::string_view what, double share);
+  // From now on, shares are of this part of the case, which begins at `begin`.
+  void part(double begin, double length) { begin_ = begin, length_ = length; }
   void add(Picture picture) { pictures_.push_back(std::move(picture)); }
   const std::vector<Picture>& pictures() const { return pictures_; }
 
@@ -31,6 +33,7 @@ class Desk {
   std::vector<Picture> pictures_;
   SystemClock clock_;
   double start_s_ = clock_.monotonic_s(), last_s_ = start_s_;
+  double begin_ = 0.0, length_ = 1.0;
   ProgressLine line_;
 };
 

@@ -46,7 +46,8 @@ class HeldNodes {
   std::vector<Node> nodes_;
 };
 
-// Mode I in plane strain: displacement per stress intensity (m per Pa sqrt(m)) around a tip at the origin whose crack lies along -x (Williams, 1957).
+// Mode I in plane strain: displacement per stress intensity (m per Pa sqrt(m)) around a tip at the origin whose crack lies along -x
+// (Williams, 1957).
 struct NearTip {
   double young, poisson;
   double modulus() const { return young / (1.0 - poisson * poisson); }  // E': G = K^2 / E'

@@ -55,7 +55,8 @@ Scene flaws_scene() {
   Scene scene = paper_scene(upper, 0.07, 0.14, 140, 280);
   scene.layers = {{0.07, lower}, {0.14, upper}};
   const double cos = 0.5, sin = 0.5 * std::sqrt(3.0), near = 0.011, far = 0.026, x = 0.035, z = 0.07;  // m along the line of both flaws
-  scene.cracks = {{x - far * cos, z - far * sin, x - near * cos, z - near * sin}, {x + near * cos, z + near * sin, x + far * cos, z + far * sin}};
+  scene.cracks = {{x - far * cos, z - far * sin, x - near * cos, z - near * sin},
+                  {x + near * cos, z + near * sin, x + far * cos, z + far * sin}};
   grip(scene, Side::bottom, -0.1);
   grip(scene, Side::top, -0.1);
   scene.horizon = 0.02;
@@ -93,9 +94,10 @@ std::vector<Row> straight_crack(Desk& desk) {
   const bool through = specimen.cracked(CrackDirection::left_right);
   desk.add({"straight_crack", "PF-40: damage when the crack reaches the right side.",
             damage_page("Paper test 1", {specimen.damage(fmt::format("{:.2f} µs", 1e6 * specimen.time()))}, 420)});
-  return {compare("1 where the crack reaches the right side", "1", 1.0, through ? 1.0 : 0.0, 0.0),
-          between("farthest from the notch's height, in cells", "h", {0.0, 1.0}, stray(crack_path(specimen, 0.9), h, 0.5e-3, middle) / h, 0.0),
-          report("through crack", "s", specimen.time())};
+  return {
+      compare("1 where the crack reaches the right side", "1", 1.0, through ? 1.0 : 0.0, 0.0),
+      between("farthest from the notch's height, in cells", "h", {0.0, 1.0}, stray(crack_path(specimen, 0.9), h, 0.5e-3, middle) / h, 0.0),
+      report("through crack", "s", specimen.time())};
 }
 
 std::vector<Row> inclined_crack(Desk& desk) {
@@ -117,12 +119,14 @@ std::vector<Row> two_flaws(Desk& desk) {
   std::vector<Damage> panels;
   double linked = 0.0;
   const auto look = [&](Specimen& s) {
-    if (linked == 0.0 && weakest_link(s) > 0.9) linked = s.time(), panels.push_back(s.damage(fmt::format("linked, {:.2f} ms", 1e3 * linked)));
+    if (linked == 0.0 && weakest_link(s) > 0.9)
+      linked = s.time(), panels.push_back(s.damage(fmt::format("linked, {:.2f} ms", 1e3 * linked)));
     return !s.cracked(CrackDirection::left_right);
   };
   if (!specimen.run(desk, "two flaws", 50, look)) return {failed("run")};
   panels.push_back(specimen.damage(fmt::format("through, {:.2f} ms", 1e3 * specimen.time())));
-  desk.add({"two_flaws", "PF-42: damage when the flaws have linked, and when the crack reaches both sides.", damage_page("Paper test 3", panels, 420)});
+  desk.add({"two_flaws", "PF-42: damage when the flaws have linked, and when the crack reaches both sides.",
+            damage_page("Paper test 3", panels, 420)});
   return {compare("1 where the flaws link", "1", 1.0, linked > 0.0 ? 1.0 : 0.0, 0.0),
           compare("1 where the crack runs to both sides", "1", 1.0, specimen.cracked(CrackDirection::left_right) ? 1.0 : 0.0, 0.0),
           report("linked", "s", linked), report("through crack", "s", specimen.time())};

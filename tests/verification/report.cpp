@@ -40,7 +40,9 @@ std::string line(std::initializer_list<std::string> cells) {
 std::string tally(const Done& one) {
   const auto judged = std::count_if(one.rows.begin(), one.rows.end(), [](const Row& row) { return row.judged; });
   const auto passed = std::count_if(one.rows.begin(), one.rows.end(), [](const Row& row) { return row.judged && row.passed; });
-  return judged == 0 ? "report" : passed == judged ? fmt::format("pass {}/{}", passed, judged) : fmt::format("**MISS** {}/{}", passed, judged);
+  return judged == 0        ? "report"
+         : passed == judged ? fmt::format("pass {}/{}", passed, judged)
+                            : fmt::format("**MISS** {}/{}", passed, judged);
 }
 
 std::string summary(const std::vector<Done>& done) {
@@ -48,8 +50,8 @@ std::string summary(const std::vector<Done>& done) {
   out += "|---|---|---|---:|---:|---|---:|---:|---:|---|\n";
   for (const Done& one : done)
     if (const Row* row = hardest(one))
-      out += line({std::string(one.which->id), std::string(one.which->title), row->what, wanted(*row), number(row->ours), row->unit, error(*row),
-                   allowed(*row), fmt::format("{:.1f}", one.seconds), tally(one)});
+      out += line({std::string(one.which->id), std::string(one.which->title), row->what, wanted(*row), number(row->ours), row->unit,
+                   error(*row), allowed(*row), fmt::format("{:.1f}", one.seconds), tally(one)});
   return out;
 }
 
@@ -58,7 +60,8 @@ std::string section(const Done& one, const std::string& pictures) {
   if (!one.which->set_up.empty()) out += fmt::format("\n{}\n", one.which->set_up);
   out += "\n" + line({"what", "target", "ours", "unit", "error", "allowed", "verdict", "note"}) + "|---|---:|---:|---|---:|---:|---|---|\n";
   for (const Row& row : one.rows)
-    out += line({row.what, wanted(row), number(row.ours), row.unit, error(row), allowed(row), row.passed ? verdict(row) : "**MISS**", row.note});
+    out += line(
+        {row.what, wanted(row), number(row.ours), row.unit, error(row), allowed(row), row.passed ? verdict(row) : "**MISS**", row.note});
   if (!pictures.empty())
     for (const Picture& picture : one.pictures)
       out += fmt::format("\n{}\n\n![{}]({}/{}.png)\n", picture.caption, picture.name, pictures, picture.name);
@@ -75,7 +78,8 @@ std::string text_report(const std::vector<Done>& done) {
   std::vector<std::vector<std::string>> table{{"id", "what", "target", "ours", "unit", "error", "allowed", "verdict", "note"}};
   for (const Done& one : done)
     for (const Row& row : one.rows)
-      table.push_back({std::string(one.which->id), row.what, wanted(row), number(row.ours), row.unit, error(row), allowed(row), verdict(row), row.note});
+      table.push_back({std::string(one.which->id), row.what, wanted(row), number(row.ours), row.unit, error(row), allowed(row),
+                       verdict(row), row.note});
   std::string out = table_text(table) + "\n";
   for (const Done& one : done)
     out += fmt::format("{:<6} {:<42} {:7.2f} s   {}\n", one.which->id, one.which->title, one.seconds, one.which->source);
@@ -105,8 +109,10 @@ std::string json_report(const std::vector<Done>& done) {
 
 std::string page_report(const std::vector<Done>& done, const std::string& pictures) {
   std::string out =
-      "# Verification\n\nWritten by `sh deploy/verify.sh`; `fracfarm-verify ID` runs one case, `fracfarm-verify` alone the fast ones, which every build runs as "
-      "a test. Each case below says where its target comes from, how it is set up, and every row with its error; a row that misses stays, with its reason. A "
+      "# Verification\n\nWritten by `sh deploy/verify.sh`; `fracfarm-verify ID` runs one case, `fracfarm-verify` alone the fast ones, "
+      "which every build runs as "
+      "a test. Each case below says where its target comes from, how it is set up, and every row with its error; a row that misses stays, "
+      "with its reason. A "
       "*report* is a figure that has no target.\n\n<!-- summary -->\n\n" +
       summary(done) + "\n<!-- end of summary -->\n";
   for (const Done& one : done) out += section(one, pictures);

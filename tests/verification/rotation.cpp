@@ -134,15 +134,17 @@ std::vector<Row> rotation_of_laws(Desk& desk) {
                        ? report(what, "1", worst_turn(split.split), "not invariant: it clips the strains along the grid's axes")
                        : compare(what, "1", 0.0, worst_turn(split.split), 1e-12));
   }
-  desk.add({"rotation_of_laws", "PF-9: the energy that drives damage as the strain turns against the grid; an invariant law is a level line.",
-            chart_page({law_chart("Pure shear", {1.0, -1.0, 0.0}), law_chart("Uniaxial compression", {poisson / (1.0 - poisson), -1.0, 0.0})})});
+  desk.add(
+      {"rotation_of_laws", "PF-9: the energy that drives damage as the strain turns against the grid; an invariant law is a level line.",
+       chart_page({law_chart("Pure shear", {1.0, -1.0, 0.0}), law_chart("Uniaxial compression", {poisson / (1.0 - poisson), -1.0, 0.0})})});
   return rows;
 }
 
 std::vector<Row> rotation(Desk& desk) {
   constexpr int angles = 9;
   std::vector<Row> rows;
-  Chart load{"G at onset against angle", {"angle (degrees)", ""}, {"G / Gc", ""}, {}}, turn{"Deviation", {"angle (degrees)", ""}, {"degrees", ""}, {}};
+  Chart load{"G at onset against angle", {"angle (degrees)", ""}, {"G / Gc", ""}, {}},
+      turn{"Deviation", {"angle (degrees)", ""}, {"degrees", ""}, {}};
   for (std::size_t k = 0; k < all_splits.size(); ++k) {
     const std::string name(all_splits[k].name);
     Line rates{name, palette[k], {}, {}}, deviations = rates;
@@ -160,8 +162,10 @@ std::vector<Row> rotation(Desk& desk) {
                           fmt::format("G/Gc {:.2f} – {:.2f}; grows up to {:.1f} degrees off its direction", *low, *high, worst)));
     load.lines.push_back(rates), turn.lines.push_back(deviations);
   }
-  desk.add({"rotation", "PF-9: a crack turned against the grid under mode I: energy release rate at which it has grown by 2 w0, and how far it then strays.",
-            chart_page({load, turn})});
+  desk.add(
+      {"rotation",
+       "PF-9: a crack turned against the grid under mode I: energy release rate at which it has grown by 2 w0, and how far it then strays.",
+       chart_page({load, turn})});
   return rows;
 }
 

@@ -18,7 +18,9 @@ Material material_of(const Brittle& brittle) {
 }
 
 Specimen::Specimen(const Scene& scene)
-    : scene_(scene), simulation_(make_phase_field(scene_)), dt_(scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())) {}
+    : scene_(scene),
+      simulation_(make_phase_field(scene_)),
+      dt_(scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())) {}
 
 bool Specimen::run(Desk& desk, std::string_view what, int every, const std::function<bool(Specimen&)>& look) {
   if (!simulation_->start(dt_)) return false;

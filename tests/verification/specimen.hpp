@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/scene.hpp"
 #include "common/failure/failure.hpp"
+#include "common/scene/scene.hpp"
 #include "solver/simulation.hpp"
 #include "tests/verification/desk.hpp"
 #include "tests/verification/pictures.hpp"

@@ -28,8 +28,8 @@ void forget(Bench& bench) {
         if (bench.state.psi[bench.at(i + corner % 2, j + corner / 2)] < 0.95) bench.set_history(i, j, corner, 0.0);
 }
 
-// The crack begins 40 cells inside; its field moves on by 120 cells at `speed` times c_s. An odd number of cells up puts its line into a row of
-// elements.
+// The crack begins 40 cells inside; its field moves on by 120 cells at `speed` times c_s. An odd number of cells up puts its line into a
+// row of elements.
 Track surf(Desk& desk, bool forgets, double speed, double begin, double part) {
   constexpr int cells_x = 240, cells_z = 81;
   Scene scene = plain_scene(material_of({density, young, poisson, Gc}), cells_x, cells_z, h);
@@ -38,7 +38,8 @@ Track surf(Desk& desk, bool forgets, double speed, double begin, double part) {
   const double middle = 0.5 * scene.height, c_s = std::sqrt(0.5 * young / (1.0 + poisson) / density), first = 40.0 * h;
   scene.cracks = {{0.0, middle, first, middle}};
   Bench bench(scene);
-  HeldNodes frame(bench, [&](double x, double z) { return x < 0.5 * h || x > scene.width - 0.5 * h || z < 0.5 * h || z > scene.height - 0.5 * h; });
+  HeldNodes frame(
+      bench, [&](double x, double z) { return x < 0.5 * h || x > scene.width - 0.5 * h || z < 0.5 * h || z > scene.height - 0.5 * h; });
   const double dt = 0.9 * bench.model.stable_dt, V = speed * c_s, opening = 400.0 * h / c_s, end = opening + 120.0 * h / V;
   if (!phasefield::start(bench.model, scene.initial, bench.state, bench.scratch, bench.kernels, dt)) return {};
   const NearTip near{young, poisson};
@@ -87,14 +88,17 @@ std::vector<Row> surfing(Desk& desk) {
     const char* name;
   };
   int k = 0;
-  for (const auto& [speed, forgets, name] : {Kind{0.02, false, "H kept"}, Kind{0.05, false, "H kept"}, Kind{0.05, true, "H kept in the crack alone"}}) {
+  for (const auto& [speed, forgets, name] :
+       {Kind{0.02, false, "H kept"}, Kind{0.05, false, "H kept"}, Kind{0.05, true, "H kept in the crack alone"}}) {
     const Track track = surf(desk, forgets, speed, k / 3.0, 1.0 / 3.0);
     const double from = 70.0 * h, to = 140.0 * h, G = per_advance(track, track.released, from, to) / Gc;
-    rows.push_back(between(fmt::format("energy released per advance over Gc, {} c_s, {}", speed, name), "1", {root, 0.5 * share + root}, G, 0.0,
+    rows.push_back(between(fmt::format("energy released per advance over Gc, {} c_s, {}", speed, name), "1", {root, 0.5 * share + root}, G,
+                           0.0,
                            fmt::format("the surface functional grows by {:.3f} Gc", per_advance(track, track.surface, from, to) / Gc)));
     chart.lines.push_back({fmt::format("{} c_s, {}", speed, name), palette[k++], track.tip, track.released});
   }
-  desk.add({"surfing", "PF-25: energy given up to damage as the tip moves; its slope is the toughness that the grid shows.", chart_page({chart})});
+  desk.add({"surfing", "PF-25: energy given up to damage as the tip moves; its slope is the toughness that the grid shows.",
+            chart_page({chart})});
   return rows;
 }
 

@@ -1,0 +1,119 @@
+// PF-20 and PF-21: the notched square pulled and sheared, quasi-statically, its notch a cut of one element's height with free faces.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/phasefield/assembled/assembled.hpp"
+#include "tests/verification/bench.hpp"
+#include "tests/verification/cases.hpp"
+#include "tests/verification/specimen.hpp"
+
+namespace fracfarm::verification {
+namespace {
+
+constexpr double side = 1e-3, micrometre = 1e-6;  // m
+
+// An odd number of cells up, so that the cut lies in the middle.
+Scene square(int cells, double l, Split split) {
+  Scene scene = plain_scene(material_of({7800.0, 210e9, 0.3, 2700.0}), cells, cells + 1 - cells % 2, 1.0);
+  scene.width = scene.height = scene.layers[0].below = side;
+  PhaseFieldSettings& settings = scene.phase_field;
+  settings.residual_stiffness = 1e-9;
+  settings.length_scale = {LengthScale::Kind::metres, l};
+  settings.split = split;
+  settings.quadrature = Quadrature::gauss;
+  settings.integrator = Integrator::quasi_static;
+  settings.staggered_tolerance = 1e-4;
+  settings.staggered_passes = 40;
+  settings.dt = 1.0;
+  set_load(scene, Side::bottom, roller(side, Tangential::fixed));
+  return scene;
+}
+
+struct Pull {
+  double coarse, fine, from;  // displacement of the head in a step (m): coarse up to `from`, fine after it
+  Axis axis;
+};
+
+struct Curve {
+  std::vector<double> u{0.0}, force{0.0};  // m, N for a thickness of 1 mm
+  double peak = 0.0, at = 0.0;
+  std::vector<Damage> panels;
+  double stiffness() const { return u.size() > 1 ? force[1] / u[1] : NAN; }  // N/m
+};
+
+// Moves the head, one metre a second on the load's clock, until the force has fallen by a tenth from its peak.
+Curve pull(Desk& desk, const Scene& scene, const Pull& pull, bool cut) {
+  phasefield::assembled::Assembled body(scene);
+  const int across = body.columns() - 1, up = body.rows() - 1;
+  if (cut) {
+    body.model().cut_out.assign(static_cast<std::size_t>(across * up), 0);
+    for (int i = 0; 2 * i < across; ++i) body.model().cut_out[static_cast<std::size_t>(up / 2 * across + i)] = 1;
+  }
+  Curve curve;
+  if (!body.start(1.0)) return curve;
+  for (int n = 0; curve.force.back() >= 0.9 * curve.peak && curve.u.back() < 15.0 * micrometre; ++n) {
+    const double step = curve.u.back() < pull.from ? pull.coarse : pull.fine;
+    if (!body.step(n, step)) return curve;
+    double force = 0.0;
+    for (int i = 0; i <= across; ++i) force += body.reaction(i, up, pull.axis) * 1e-3;
+    curve.u.push_back(curve.u.back() + step), curve.force.push_back(force);
+    if (force > curve.peak) curve.peak = force, curve.at = curve.u.back();
+    desk.progress("notched square", 0.9 * curve.u.back() / (1.1 * pull.from));
+  }
+  std::vector<double> psi;
+  body.copy_damage(psi);
+  curve.panels.push_back({fmt::format("{:.2f} µm", curve.u.back() / micrometre), {psi.begin(), psi.end()}, across + 1, up + 1, side, side});
+  return curve;
+}
+
+}  // namespace
+
+std::vector<Row> notched_tension(Desk& desk) {
+  Scene scene = square(134, 0.015e-3, Split::none);
+  SideLoad head = roller(side);
+  head.normal_velocity = 1.0;
+  set_load(scene, Side::top, head);
+  const Curve curve = pull(desk, scene, {0.25 * micrometre, 0.02 * micrometre, 5.0 * micrometre, Axis::z}, true);
+  desk.add({"notched_tension", "PF-20: force on the head against its displacement, for a thickness of 1 mm.",
+            chart_page({{"Notched square, tension", {"displacement", "m"}, {"force", "N"}, {{"ours", blue, curve.u, curve.force}}}})});
+  return {between("stiffness", "N/m", {137.9e6, 138.2e6}, curve.stiffness(), 0.005),
+          between("peak force, 1 mm thick", "N", {690.0, 701.0}, curve.peak, 0.03),
+          between("displacement at the peak", "m", {5.55e-6, 5.59e-6}, curve.at, 0.02)};
+}
+
+std::vector<Row> notched_shear(Desk& desk) {
+  constexpr std::array<int, 3> cells{30, 60, 120};  // h = l/1.8, l/3.6, l/7.2
+  std::array<Curve, 3> curves;
+  Chart chart{"Notched square, shear", {"displacement", "m"}, {"force", "N"}, {}};
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    Scene scene = square(cells[k], 0.06e-3, Split::spectral);
+    SideLoad head = roller(side), flank;
+    head.tangential = Tangential::velocity, head.tangential_velocity = 1.0;
+    set_load(scene, Side::top, head);
+    flank.to = side, flank.tangential = Tangential::fixed;
+    for (const Side where : {Side::left, Side::right}) set_load(scene, where, flank);
+    desk.part(k == 0 ? 0.0 : k == 1 ? 0.05 : 0.2, k == 0 ? 0.05 : k == 1 ? 0.15 : 0.8);
+    curves[k] = pull(desk, scene, {0.4 * micrometre, 0.025 * micrometre, 8.6 * micrometre, Axis::x}, true);
+    chart.lines.push_back({fmt::format("{}²", cells[k]), palette[k], curves[k].u, curves[k].force});
+  }
+  desk.add({"notched_shear", "PF-21: force on the head against its displacement, for a thickness of 1 mm, on three grids.",
+            chart_page({chart})});
+  desk.add({"notched_shear_damage", "PF-21: damage when the force has fallen by a tenth, finest grid.",
+            damage_page("Notched square, shear", curves[2].panels, 420)});
+  const auto limit = [&](double (*of)(const Curve&)) { return 2.0 * of(curves[2]) - of(curves[1]); };
+  const auto grids = [&](double (*of)(const Curve&)) {
+    return fmt::format("on the three grids {:.4g}, {:.4g}, {:.4g}: first order in h, the limit is that of the last two", of(curves[0]),
+                       of(curves[1]), of(curves[2]));
+  };
+  const auto peak = [](const Curve& c) { return c.peak; };
+  const auto at = [](const Curve& c) { return c.at; };
+  const auto stiffness = [](const Curve& c) { return c.stiffness(); };
+  return {compare("peak force, 1 mm thick, h to 0", "N", 494.7, limit(peak), 0.03, grids(peak)),
+          compare("displacement at the peak, h to 0", "m", 8.70e-6, limit(at), 0.03, grids(at)),
+          compare("stiffness, h to 0", "N/m", 63.44e6, limit(stiffness), 0.01, grids(stiffness))};
+}
+
+}  // namespace fracfarm::verification
