@@ -14,7 +14,7 @@ constexpr std::uint64_t campaign_seed = 2026, sample_id = 2;  // about as many s
 
 RealRun solve_once() {
   RealRun run;
-  run.scene = sample_scene({find_material("pbx"), find_load("uniaxial"), CrackSet::orthogonal, campaign_seed, sample_id});
+  run.scene = real_scene();
   run.task.scene = canonical_text(run.scene);
   run.task.key = job_key(run.task.scene, build_info().build_id);
   RunResult result = solve(run.scene, {}).value();
@@ -26,6 +26,11 @@ RealRun solve_once() {
 }
 
 }  // namespace
+
+const Scene& real_scene() {
+  static const Scene scene = sample_scene({find_material("pbx"), find_load("uniaxial"), CrackSet::orthogonal, campaign_seed, sample_id});
+  return scene;
+}
 
 const RealRun& real_run() {
   static const RealRun run = solve_once();

@@ -17,6 +17,7 @@ struct RealRun {
   std::string bytes;
 };
 
+const Scene& real_scene();
 const RealRun& real_run();
 
 }  // namespace fracfarm::benchmarks

@@ -14,7 +14,7 @@ import numpy as np
 # What FEniCSx is run as: the cheapest way to write it first; then the scheme of the seed paper with a good solver and with dolfinx's own choice,
 # a factorisation in every pass, of which a few steps are enough to tell.
 FENICSX = [("explicit", "cg"), ("newmark", "cg"), ("newmark", "lu")]
-FACTORISED_STEPS = 15
+FACTORISED_STEPS = 6
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
