@@ -103,7 +103,7 @@ struct Kernels {
   double (*history)(const View<Real>&, int j);
   // previous = 2 psi - previous within [0, 1].
   void (*guess)(const View<Real>&, int j, const Real* psi, Real* previous);
-  // next += omega (z - next) with z the Jacobi image of psi, or z itself where omega is 1; returns max |z - psi|. Needs psi of the rows j -
+  // next += omega (z - next) with z the Jacobi image of psi, or z itself where omega is 1. Needs psi of the rows j -
   // 1 to j + 1. The last sweep of a solve keeps next within [0, 1].
   double (*sweep)(const View<Real>&, int j, const Real* psi, Real* next, Real omega, bool last);
   // One sweep of the row in place, with omega 1 and within [0, 1].

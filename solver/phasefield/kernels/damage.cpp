@@ -24,7 +24,7 @@ INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real om
 #pragma omp simd reduction(max : change)
   for (Index i = 0; i < v.columns; ++i) {
     const Real z = inverse[i] * ((source[i] + c.side * (here[i - 1] + here[i + 1])) + (c.south * south[i] + c.north * north[i]));
-    change = larger(magnitude(z - here[i]), change);
+    if (last) change = larger(std::abs(z - here[i]), change);
     const Real relaxed = first ? z : out[i] + omega * (z - out[i]);
     out[i] = last ? within_bounds(relaxed) : relaxed;
   }

@@ -85,24 +85,33 @@ INLINE void elastic_force(const View& v, int j, const Rows& rows, const HalfEdge
   }
 }
 
-// Any law: the stress of each quadrant, g degraded + kept.
-struct QuadrantStress {
-  Stress sw, se, nw, ne;
-};
+// Any law: from the stress of each quadrant, g degraded + kept.
+class QuadrantForces {
+ public:
+  QuadrantForces(const View& v, const Rows& rows, const HalfEdges& out)
+      : rows_(rows), out_(out), weight_(v.column_weight), x_(Real(v.corner_area / v.hx)), z_(Real(v.corner_area / v.hz)) {}
 
-INLINE void add_quadrants(const View& v, const Rows& rows, const HalfEdges& out, Index i, const QuadrantStress& q) {
-  const Real x = Real(v.corner_area / v.hx), z = Real(v.corner_area / v.hz), weight = v.column_weight[i];
-  rows.east_x[i] = x * (q.ne.xx + q.se.xx);
-  rows.east_z[i] = x * (q.ne.xz + q.se.xz);
-  rows.west_x[i] = x * (q.nw.xx + q.sw.xx);
-  rows.west_z[i] = x * (q.nw.xz + q.sw.xz);
-  out.north_x[i] = weight * z * (q.ne.xz + q.nw.xz);
-  out.south_x[i] = weight * z * (q.se.xz + q.sw.xz);
-  out.north_z[i] = weight * z * (q.ne.zz + q.nw.zz);
-  out.south_z[i] = weight * z * (q.se.zz + q.sw.zz);
-  rows.stress_xx[i] = weight * (rows.east_x[i] + rows.west_x[i]);
-  rows.stress_zz[i] = out.north_z[i] + out.south_z[i];
-}
+  INLINE void add(Index i, Stress sw, Stress se, Stress nw, Stress ne) const {
+    const Real z = weight_[i] * z_, east = x_ * (ne.xx + se.xx), west = x_ * (nw.xx + sw.xx);
+    const Real north = z * (ne.zz + nw.zz), south = z * (se.zz + sw.zz);
+    rows_.east_x[i] = east;
+    rows_.west_x[i] = west;
+    rows_.east_z[i] = x_ * (ne.xz + se.xz);
+    rows_.west_z[i] = x_ * (nw.xz + sw.xz);
+    out_.north_z[i] = north;
+    out_.south_z[i] = south;
+    out_.north_x[i] = z * (ne.xz + nw.xz);
+    out_.south_x[i] = z * (se.xz + sw.xz);
+    rows_.stress_xx[i] = weight_[i] * (east + west);
+    rows_.stress_zz[i] = north + south;
+  }
+
+ private:
+  Rows rows_;
+  HalfEdges out_;
+  const Real* weight_;
+  Real x_, z_;
+};
 
 INLINE void finish_quadrants(const View& v, const Rows& rows, const HalfEdges& out) {
   rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
@@ -114,7 +123,10 @@ INLINE void finish_quadrants(const View& v, const Rows& rows, const HalfEdges& o
   }
 }
 
-INLINE Stress degraded(Real g, const Stress& s) { return {g * s.xx, g * s.zz, g * s.xz}; }
+INLINE Stress secant_stress(SecantRow row, Real g, Real reduction, Strain e) {
+  const Stiffness C = reduced(row, reduction);
+  return {g * (C.C11 * e.xx + C.C13 * e.zz), g * (C.C13 * e.xx + C.C33 * e.zz), g * (C.C55 * e.xz)};
+}
 
 INLINE void secant_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
@@ -122,14 +134,15 @@ INLINE void secant_force(const View& v, int j, const Rows& rows, const HalfEdges
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
   const Index at = row_at(v, j);
   const Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Quadrants e = strains(u, i, per_hx, per_hz);
-    const Real g = rows.g[i];
-    add_quadrants(v, rows, out, i,
-                  {degraded(g, law::stress(reduced(s, r0[i]), e.sw)), degraded(g, law::stress(reduced(s, r1[i]), e.se)),
-                   degraded(g, law::stress(reduced(n, r2[i]), e.nw)), degraded(g, law::stress(reduced(n, r3[i]), e.ne))});
-  }
+  const QuadrantForces forces(v, rows, out);
+  const Real* degradation = rows.g;
+  along_row(
+      v.padded, ROW_BODY {
+        const Quadrants e = strains(u, i, per_hx, per_hz);
+        const Real g = degradation[i];
+        forces.add(i, secant_stress(s, g, r0[i], e.sw), secant_stress(s, g, r1[i], e.se), secant_stress(n, g, r2[i], e.nw),
+                   secant_stress(n, g, r3[i], e.ne));
+      });
   finish_quadrants(v, rows, out);
 }
 
@@ -144,13 +157,14 @@ INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges&
   const Around u = around(v, j);
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Quadrants e = strains(u, i, per_hx, per_hz);
-    const Real g = rows.g[i];
-    add_quadrants(v, rows, out, i,
-                  {split_stress(s, g, e.sw), split_stress(s, g, e.se), split_stress(n, g, e.nw), split_stress(n, g, e.ne)});
-  }
+  const QuadrantForces forces(v, rows, out);
+  const Real* degradation = rows.g;
+  along_row(
+      v.padded, ROW_BODY {
+        const Quadrants e = strains(u, i, per_hx, per_hz);
+        const Real g = degradation[i];
+        forces.add(i, split_stress(s, g, e.sw), split_stress(s, g, e.se), split_stress(n, g, e.nw), split_stress(n, g, e.ne));
+      });
   finish_quadrants(v, rows, out);
 }
 

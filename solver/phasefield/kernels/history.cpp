@@ -88,15 +88,15 @@ INLINE void secant_history(const View& v, int j) {
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
   const Index at = row_at(v, j);
   Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Quadrants e = strains(u, i, per_hx, per_hz);
-    Real sw, se, nw, ne;
-    const Real w_sw = secant_quadrant<Split>(s, e.sw, sw, r0[i]), w_se = secant_quadrant<Split>(s, e.se, se, r1[i]);
-    const Real w_nw = secant_quadrant<Split>(n, e.nw, nw, r2[i]), w_ne = secant_quadrant<Split>(n, e.ne, ne, r3[i]);
-    row.stored[i] = (w_sw + w_se) + (w_nw + w_ne);
-    commit(row, i, sw, se, nw, ne);
-  }
+  along_row(
+      v.padded, ROW_BODY {
+        const Quadrants e = strains(u, i, per_hx, per_hz);
+        Real sw, se, nw, ne;
+        const Real w_sw = secant_quadrant<Split>(s, e.sw, sw, r0[i]), w_se = secant_quadrant<Split>(s, e.se, se, r1[i]);
+        const Real w_nw = secant_quadrant<Split>(n, e.nw, nw, r2[i]), w_ne = secant_quadrant<Split>(n, e.ne, ne, r3[i]);
+        row.stored[i] = (w_sw + w_se) + (w_nw + w_ne);
+        commit(row, i, sw, se, nw, ne);
+      });
 }
 
 INLINE bool yields(const View& v, int j) {
@@ -123,13 +123,14 @@ INLINE double split_history(const View& v, int j) {
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
   Real* kept = scratch_row(v, first_free_row);
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Quadrants e = strains(u, i, per_hx, per_hz);
-    row.stored[i] = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
-    kept[i] = v.column_weight[i] * ((s.kept_energy(e.sw) + s.kept_energy(e.se)) + (n.kept_energy(e.nw) + n.kept_energy(e.ne)));
-    commit(row, i, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
-  }
+  const Real* weight = v.column_weight;
+  along_row(
+      v.padded, ROW_BODY {
+        const Quadrants e = strains(u, i, per_hx, per_hz);
+        row.stored[i] = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
+        kept[i] = weight[i] * ((s.kept_energy(e.sw) + s.kept_energy(e.se)) + (n.kept_energy(e.nw) + n.kept_energy(e.ne)));
+        commit(row, i, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
+      });
   return v.corner_area * ordered_sum(kept, v.padded);
 }
 

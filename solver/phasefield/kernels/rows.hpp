@@ -26,7 +26,6 @@ using Index = long;
 INLINE Index row_at(const View& v, int j) { return Index(j) * v.stride; }
 INLINE Real larger(Real a, Real b) { return a > b ? a : b; }
 INLINE Real smaller(Real a, Real b) { return a < b ? a : b; }
-INLINE Real magnitude(Real a) { return a < Real(0) ? -a : a; }
 
 // Displacements around a row of nodes.
 struct Around {
@@ -37,6 +36,14 @@ INLINE Around around(const View& v, int j) {
   const Real *x = v.ux + row_at(v, j), *z = v.uz + row_at(v, j);
   return {x, x - v.stride, x + v.stride, z, z - v.stride, z + v.stride};
 }
+
+// body(i) over a row. What a simd loop itself declares may end up in memory and keep it scalar; what `body` declares does not.
+template <class Body>
+INLINE void along_row(Index n, const Body& body) {
+#pragma omp simd
+  for (Index i = 0; i < n; ++i) body(i);
+}
+#define ROW_BODY [=](Index i) __attribute__((always_inline))
 
 struct Quadrants {
   Strain sw, se, nw, ne;
@@ -50,14 +57,16 @@ INLINE Quadrants strains(const Around& u, Index i, Real per_hx, Real per_hz) {
   return {{xx_w, zz_s, xz_s + zx_w}, {xx_e, zz_s, xz_s + zx_e}, {xx_w, zz_n, xz_n + zx_w}, {xx_e, zz_n, xz_n + zx_e}};
 }
 
+static_assert(lanes == 16);
 // Sum of n (a multiple of `lanes`) numbers: `lanes` partial sums, then pairs.
 INLINE double ordered_sum(const Real* __restrict x, Index n) {
   Real part[lanes] = {};
   for (Index i = 0; i < n; i += lanes)
     for (int l = 0; l < lanes; ++l) part[l] += x[i + l];
-  for (int half = lanes / 2; half > 0; half /= 2)
-    for (int l = 0; l < half; ++l) part[l] += part[l + half];
-  return part[0];
+  Real eight[8], four[4];
+  for (int l = 0; l < 8; ++l) eight[l] = part[l] + part[l + 8];
+  for (int l = 0; l < 4; ++l) four[l] = eight[l] + eight[l + 4];
+  return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
 INLINE Real* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
