@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/base/text.hpp"
+#include "common/failure/new_crack.hpp"
 #include "common/record/damage_sweeps.hpp"
 #include "common/record/rounding.hpp"
 #include "common/scene/parse.hpp"
@@ -209,8 +210,14 @@ double seconds_apart(const Context& c, std::string_view rule, const std::optiona
   return again ? std::abs(*stored->time - *again) : 0.0;
 }
 
+// A drop that is not stored is one of a body with no new crack.
 double drop_difference(const Context& c) {
-  return seconds_apart(c, "stress_drop", stress_drop(c.record.series["step_time"], c.record.series["stress_zz"]));
+  const auto again = stress_drop(c.record.series["step_time"], c.record.series["stress_zz"]);
+  const FailureTime* stored = candidate(c.record, "stress_drop");
+  if (!stored || stored->time || !again) return seconds_apart(c, "stress_drop", again);
+  const auto after = std::upper_bound(c.field.time.begin(), c.field.time.end(), *again);
+  const auto frame = static_cast<std::size_t>(after - c.field.time.begin());
+  return frame > 0 && has_new_crack(c.field.psi[frame - 1], c.field.psi_initial) ? infinity : 0.0;
 }
 
 double pick_difference(const Context& c) {

@@ -157,6 +157,9 @@ std::string through_crack(const Scene& scene, const RunResult& r) {
 
 std::string stress_drop_time(const Scene&, const RunResult& r) {
   if (r.judgement.rule != "stress_drop") return {};
+  bool breaks = false;
+  for (std::size_t n = 0; n < r.psi_failure.size(); ++n) breaks = breaks || (r.psi_failure[n] > 0.9f && r.psi_initial[n] <= 0.9f);
+  if (!breaks) return "the body is as whole as it was at the start";
   const auto time = r.series["step_time"], stress = r.series["stress_zz"];
   const double at = *r.judgement.time_to_failure;
   double peak = 0.0;

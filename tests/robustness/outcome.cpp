@@ -78,16 +78,8 @@ RunControl control_of(const Scene& scene, const Trial& trial) {
   return control;
 }
 
-// A body that only rings may lose its mean stress, too; such ends are counted apart.
-bool breaks_anew(const RunResult& r) {
-  for (std::size_t n = 0; n < r.psi_failure.size(); ++n)
-    if (r.psi_failure[n] > 0.9f && r.psi_initial[n] <= 0.9f) return true;
-  return false;
-}
-
 Outcome judge_result(const Scene& scene, const RunResult& result, const Trial& trial) {
   Outcome outcome = ended(result.judgement.verdict == Verdict::failed ? End::failed : End::censored, result.judgement.rule);
-  if (outcome.why == "stress_drop" && !breaks_anew(result)) outcome.why += " with no new crack";
   if (const std::string broken = broken_rule(scene, result); !broken.empty()) outcome = violation(broken);
   outcome.steps = result.steps;
   const bool quasi_static = scene.phase_field.integrator == Integrator::quasi_static;
