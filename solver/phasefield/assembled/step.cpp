@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "solver/phasefield/assembled/anderson.hpp"
 #include "solver/phasefield/assembled/points.hpp"
 #include "solver/phasefield/assembled/solvers.hpp"
 
@@ -112,6 +113,7 @@ Result<void> explicit_step(const Model& model, State& state, Scratch& scratch, d
 // Displacement and damage in turns until psi settles. An increment that did not settle in the passes that it has goes on in the next one.
 Result<void> staggered_passes(const Model& model, Balance balance, State& state, Scratch& scratch) {
   state.psi_previous = state.psi;
+  Anderson anderson;
   for (int pass = 0; pass < model.settings.staggered_passes; ++pass) {
     balance.reduction = pass > 0 ? reduction : 0.0;
     ++state.passes;
@@ -124,7 +126,9 @@ Result<void> staggered_passes(const Model& model, Balance balance, State& state,
     scratch.clock.end(Stage::damage);
     degrade(model, state, scratch);
     scratch.clock.end(Stage::degrade);
-    if ((state.psi - psi).cwiseAbs().maxCoeff() < model.settings.staggered_tolerance) break;
+    if ((state.psi - psi).cwiseAbs().maxCoeff() < model.settings.staggered_tolerance || pass + 1 == model.settings.staggered_passes) break;
+    state.psi = anderson.next(psi, state.psi).cwiseMax(state.psi_previous).cwiseMin(1.0);
+    degrade(model, state, scratch);
   }
   return {};
 }
