@@ -11,10 +11,10 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// 37 values: whole vectors and a rest.
+// 549 values: whole blocks and vectors, and a rest of both.
 std::vector<float> ramp() {
   std::vector<float> psi;
-  for (int i = 0; i < 37; ++i) psi.push_back(static_cast<float>(i) / 36.0f);
+  for (int i = 0; i < 549; ++i) psi.push_back(static_cast<float>(i) / 548.0f);
   return psi;
 }
 
