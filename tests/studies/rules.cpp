@@ -6,23 +6,44 @@
 
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
+#include "solver/phasefield/phase_field.hpp"
 #include "tests/studies/studies.hpp"
 
 namespace fracfarm::studies {
 namespace {
 
+using Made = std::unique_ptr<Simulation>;
+
 struct Rule {
   std::string_view name;
   std::string_view meaning;
-  void (*keep)(Scene&);  // the full way
-  void (*save)(Scene&);  // with the rule
+  Made (*keep)(const Scene&);  // the full way
+  Made (*save)(const Scene&);  // with the rule
 };
 
+Made as_it_is(const Scene& scene) { return make_phase_field(scene); }
+
+Made in_float(const Scene& scene) { return std::make_unique<phasefield::PhaseField<float>>(scene, phasefield::chosen_kernels<float>()); }
+
+// psi to a tolerance, in double.
+Made settled_to(const Scene& scene, double tolerance) {
+  auto made = std::make_unique<phasefield::PhaseField<double>>(scene, phasefield::chosen_kernels<double>());
+  made->model().damage_tolerance = tolerance;
+  return made;
+}
+Made settled_fully(const Scene& scene) { return settled_to(scene, 1e-9); }
+
+Made without_plasticity(Scene scene) {
+  scene.phase_field.plasticity = PlasticityModel::none;
+  return make_phase_field(scene);
+}
+
 constexpr Rule table[]{
-    {"float", "numbers of 32 bits", [](Scene& s) { s.phase_field.precision = Precision::double_; },
-     [](Scene& s) { s.phase_field.precision = Precision::float_; }},
-    {"elastic", "no plasticity at all: what plasticity only where it matters may save at most", [](Scene&) {},
-     [](Scene& s) { s.phase_field.plasticity = PlasticityModel::none; }},
+    {"float", "numbers of 32 bits against 64", as_it_is, in_float},
+    {"settle", "rows are swept until psi is good to the solver's tolerance, against 1e-9", settled_fully, as_it_is},
+    {"settle-1e-3", "the same with a tolerance of 1e-3", settled_fully, [](const Scene& scene) { return settled_to(scene, 1e-3); }},
+    {"elastic", "no plasticity at all: the most that plasticity only where it matters may save", as_it_is,
+     [](const Scene& scene) { return without_plasticity(scene); }},
 };
 
 struct Pair {
@@ -35,9 +56,8 @@ struct Pair {
 };
 
 Pair compare(const Rule& rule, const Case& which, const Choice& choice) {
-  Scene full = scene_of(which, choice), saving = full;
-  rule.keep(full), rule.save(saving);
-  const Ending a = ending_of(full), b = ending_of(saving);
+  const Scene scene = scene_of(which, choice);
+  const Ending a = ending_of(scene, *rule.keep(scene)), b = ending_of(scene, *rule.save(scene));
   Pair pair;
   pair.which = which, pair.trouble = a.trouble + b.trouble;
   pair.time = apart(b.time, a.time);

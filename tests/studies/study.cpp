@@ -12,7 +12,9 @@
 #include "common/base/clock.hpp"
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
+#include "common/failure/new_crack.hpp"
 #include "common/scene/pattern.hpp"
+#include "solver/watch.hpp"
 
 namespace fracfarm::studies {
 
@@ -49,6 +51,33 @@ Ending ending_of(const Scene& scene) {
   ending.psi = std::move(result->psi_failure);
   ending.dt = result->dt;
   ending.cpu_s = result->cpu_s;
+  return ending;
+}
+
+Ending ending_of(const Scene& scene, Simulation& simulation) {
+  Ending ending;
+  ending.dt = scene.phase_field.cfl * simulation.stable_dt();
+  FailureWatch watch(watched_directions(scene));
+  const double start_s = thread_cpu_s();
+  Result<void> moved = simulation.start(ending.dt);
+  const std::vector<float> psi_initial = damage_field(simulation);
+  long long n = 0;
+  for (; moved && !watch.through_crack() && static_cast<double>(n) * ending.dt < scene.horizon; ++n) {
+    moved = simulation.step(n, ending.dt);
+    const double time = static_cast<double>(n + 1) * ending.dt, stress = simulation.mean_stress_zz();
+    ending.peak = std::max(ending.peak, stress);
+    if (watch.drops_at(stress)) ending.stress_drop = time;
+    watch.at_row(simulation, stress);
+    if (watch.psi_dropped().empty()) ending.stress_drop.reset();
+    watch.after_step(simulation, time);
+  }
+  ending.cpu_s = thread_cpu_s() - start_s;
+  if (!moved) ending.rule = "diverged", ending.trouble = moved.error().message;
+  if (!has_new_crack(watch.psi_dropped(), psi_initial)) ending.stress_drop.reset();
+  const bool through = watch.through_crack().has_value();
+  ending.time = through ? watch.through_crack() : ending.stress_drop;
+  ending.rule = !moved ? "diverged" : through ? "through_crack" : ending.stress_drop ? "stress_drop" : "horizon";
+  ending.psi = through ? watch.psi_through() : ending.stress_drop ? watch.psi_dropped() : damage_field(simulation);
   return ending;
 }
 

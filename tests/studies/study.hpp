@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/simulation.hpp"
 #include "solver/solve.hpp"
 
 namespace fracfarm::studies {
@@ -40,6 +41,8 @@ struct Ending {
 };
 
 Ending ending_of(const Scene& scene);
+// The same of a simulation that was changed in a way that no scene can say; no ledger is watched.
+Ending ending_of(const Scene& scene, Simulation& simulation);
 // The damage at the step nearest to `time` (s).
 std::vector<float> damage_at(Scene scene, double time);
 
