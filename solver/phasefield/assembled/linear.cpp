@@ -130,7 +130,10 @@ bool FactoredSolver::is_worn(long long iterations) const {
 Result<Eigen::VectorXd> FactoredSolver::solve(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& b, double limit) {
   const double size = b.norm();
   if (size <= limit) return Eigen::VectorXd::Zero(b.size());
-  const auto not_positive = [] { return fail(Fault::solver_numeric, "the stiffness matrix is not positive definite"); };
+  const auto not_positive = [] {
+    return fail(Fault::solver_numeric,
+                "the stiffness matrix is not positive definite: a part of the body is loose (a residual_stiffness above 0 holds it)");
+  };
   const bool fresh = factored_.empty();
   if (fresh && !factor(lower)) return not_positive();
   KeptFactorSolver solver(lower);

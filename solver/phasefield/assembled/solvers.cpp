@@ -12,6 +12,7 @@ namespace {
 
 constexpr int newton_limit = 60;
 constexpr int line_search_limit = 8;
+constexpr double rounding = 1e-15;
 constexpr double flat = 0.7;               // a step is short enough where the residual along it is below this share of its start
 constexpr double stalled = 1e-6;           // a residual that no iteration lowers any more is rounding if it is below this
 constexpr double remembered_force = 1e-3;  // of the largest force so far: residuals below a broken body's own forces do not matter
@@ -30,7 +31,7 @@ class NewtonSolve {
     for (int k = 0; k < newton_limit; ++k) {
       const double size = residual_.norm(), scale = std::max(scratch_.force_scale, remembered_force * state_.largest_force);
       if (!std::isfinite(size)) return fail(Fault::solver_numeric, "the residual of the displacements is not finite");
-      const double limit = std::max(balance_.tolerance * scale, enough);
+      const double limit = std::max({balance_.tolerance * scale, enough, rounding * inertia_scale_});
       if (size <= limit || (size > 0.5 * last && size <= stalled * scale)) return {};
       last = size;
       assemble();
@@ -56,6 +57,7 @@ class NewtonSolve {
   void evaluate(const Vector& u) {
     respond(model_, state_, u, Flow::on, scratch_);
     compute_force(model_, balance_.time, scratch_);
+    inertia_scale_ = balance_.inertia * model_.mass.cwiseProduct(u).norm();
     for (std::size_t d = 0; d < model_.equation.size(); ++d) {
       if (model_.equation[d] < 0) continue;
       const auto at = static_cast<Eigen::Index>(d);
@@ -89,7 +91,8 @@ class NewtonSolve {
   const Balance& balance_;
   State& state_;
   Scratch& scratch_;
-  Vector residual_;  // by equation, N/m
+  Vector residual_;             // by equation, N/m
+  double inertia_scale_ = 0.0;  // N/m, of the two terms whose difference is the inertia
 };
 
 }  // namespace
