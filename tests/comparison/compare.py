@@ -102,6 +102,30 @@ def compare(arguments, folder):
     return dict(schema="fracfarm.comparison/1", scene=os.path.basename(arguments.scene), target_ratio=500, rows=rows, references=references)
 
 
+def problems_of(arguments):
+    """All that keeps the FEniCSx script from this scene, as key, value, allowed."""
+    try:
+        scene = json.load(open(arguments.scene))
+    except (OSError, ValueError) as error:
+        return [("scene", arguments.scene, "a scene file: %s" % error)]
+    found = []
+    material, loads, settings = scene.get("material"), scene.get("loads", {}), scene.get("phase_field", {})
+    if not isinstance(material, dict) or not {"density", "young", "poisson", "Gc", "characteristic_width"} <= set(material):
+        found.append(("material", json.dumps(material), "an object with density, young, poisson, Gc and characteristic_width"))
+    elif {"yield", "hardening"} & set(material):
+        found.append(("material.yield", material.get("yield"), "none: the FEniCSx script has no plasticity"))
+    for side, load in loads.items():
+        if load != "free" and (not isinstance(load, dict) or set(load) != {"normal_velocity"}):
+            found.append(("loads." + side, json.dumps(load), '"free" or an object with normal_velocity alone'))
+    for key in sorted(set(settings) - {"cells", "residual_stiffness"}):
+        found.append(("phase_field." + key, json.dumps(settings[key]), "the default: the FEniCSx script knows cells and residual_stiffness"))
+    if "horizon" not in scene.get("time", {}):
+        found.append(("time.horizon", "missing", "seconds"))
+    if arguments.steps is not None and arguments.steps < 1:
+        found.append(("--steps", arguments.steps, "at least 1"))
+    return found
+
+
 def percent(value):
     return "%+.2f %%" % (100 * value) if value is not None else "none"
 
@@ -132,6 +156,11 @@ def main():
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     arguments.integrators = FENICSX[:1] if arguments.explicit_only else FENICSX
+    found = problems_of(arguments)
+    for key, value, allowed in found:
+        say("%s = %s; allowed: %s" % (key, value, allowed))
+    if found:
+        raise SystemExit(2)
     begun = time.time()
     with tempfile.TemporaryDirectory() as folder:
         result = compare(arguments, folder)
