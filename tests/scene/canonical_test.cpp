@@ -207,7 +207,8 @@ TEST_CASE("the canonical text of a small scene is these bytes") {
       R"("loads":{"bottom":{"normal_velocity":1,"ramp":0,"tangential":"free"},"left":"free","right":"free",)"
       R"("top":{"normal_velocity":1,"ramp":0,"tangential":"free"}},"material":"pbx","method":"phase_field",)"
       R"("phase_field":{"cells":[127,127],"cfl":0.9,"crack_seeding":"slot","integrator":"explicit","length_scale":"half","plane":"strain",)"
-      R"("plasticity":"none","precision":"double","quadrature":"gll","residual_stiffness":1e-06,"split":"seed","step":"fixed","surface":"at2"},"schema":"fracfarm.scene/1",)"
+      R"("plasticity":"none","precision":"double","quadrature":"gll","residual_stiffness":1e-06,)"
+      R"("split":"seed","step":"fixed","surface":"at2"},"schema":"fracfarm.scene/1",)"
       R"("time":{"frame_interval":5e-06,"horizon":0.001,"stop":"failure"}})");
 }
 
