@@ -46,20 +46,21 @@ class HeldNodes {
   std::vector<Node> nodes_;
 };
 
-// Mode I in plane strain: displacement per stress intensity (m per Pa sqrt(m)) around a tip at the origin whose crack lies along -x
+// Plane strain: displacement per stress intensity (m per Pa sqrt(m)) around a tip at the origin whose crack lies along -x
 // (Williams, 1957).
 struct NearTip {
   double young, poisson;
-  double modulus() const { return young / (1.0 - poisson * poisson); }  // E': G = K^2 / E'
-  std::pair<double, double> at(double x, double z) const {
+  double modulus() const { return young / (1.0 - poisson * poisson); }            // E': G = K^2 / E'
+  std::pair<double, double> at(double x, double z, bool sliding = false) const {  // mode I, or mode II
     const double r = std::hypot(x, z), half = 0.5 * std::atan2(z, x), kappa = 3.0 - 4.0 * poisson, mu = 0.5 * young / (1.0 + poisson);
     const double scale = std::sqrt(r / (2.0 * std::numbers::pi)) / (2.0 * mu), s = std::sin(half), c = std::cos(half);
+    if (sliding) return {scale * s * (kappa + 1.0 + 2.0 * c * c), -scale * c * (kappa - 1.0 - 2.0 * s * s)};
     return {scale * c * (kappa - 1.0 + 2.0 * s * s), scale * s * (kappa + 1.0 - 2.0 * c * c)};
   }
   // The same with the crack's direction of growth turned by `angle` from x.
-  std::pair<double, double> turned(double angle, double x, double z) const {
+  std::pair<double, double> turned(double angle, double x, double z, bool sliding) const {
     const double c = std::cos(angle), s = std::sin(angle);
-    const auto [along, across] = at(c * x + s * z, c * z - s * x);
+    const auto [along, across] = at(c * x + s * z, c * z - s * x, sliding);
     return {c * along - s * across, s * along + c * across};
   }
 };

@@ -25,8 +25,8 @@ Scene square(int cells, double l, Split split) {
   settings.split = split;
   settings.quadrature = Quadrature::gauss;
   settings.integrator = Integrator::quasi_static;
-  settings.staggered_tolerance = 1e-4;
-  settings.staggered_passes = 40;
+  settings.staggered_tolerance = 1e-6;
+  settings.staggered_passes = 100;
   settings.dt = 1.0;
   set_load(scene, Side::bottom, roller(side, Tangential::fixed));
   return scene;

@@ -26,26 +26,22 @@ picture::Canvas chart_page(const std::vector<Chart>& charts) {
   return page;
 }
 
-picture::Canvas damage_page(const std::string& title, const std::vector<Damage>& fields, int longest) {
-  int width = 2 * margin + scale_room, height = 0;
-  for (const Damage& field : fields) {
-    const double side = std::max(field.width, field.height);
-    width += pixels(field.width, side, longest) + margin;
-    height = std::max(height, pixels(field.height, side, longest));
-  }
-  width = std::max(width, picture::text_width(title, picture::Font::bold) + 2 * margin);
-  picture::Canvas page(width, head + caption_room + height + margin);
+picture::Canvas damage_page(const std::string& title, const std::vector<Damage>& fields, int longest, int per_row) {
+  const Damage& first = fields.front();
+  const double side = std::max(first.width, first.height);
+  const int across = pixels(first.width, side, longest), up = pixels(first.height, side, longest), count = static_cast<int>(fields.size());
+  const int columns = std::min(count, per_row), rows = (count + per_row - 1) / per_row, pitch = caption_room + up + margin;
+  const int width = margin + columns * (across + margin) + scale_room + margin;
+  picture::Canvas page(std::max(width, picture::text_width(title, picture::Font::bold) + 2 * margin), head + rows * pitch);
   page.text(margin, 26, title, picture::black, picture::Align::left, picture::Font::bold);
-  int x = margin;
-  for (const Damage& field : fields) {
-    const double side = std::max(field.width, field.height);
-    const int across = pixels(field.width, side, longest), up = pixels(field.height, side, longest);
-    page.text(x, head + 14, field.caption);
-    page.place(picture::draw_field({field.psi, field.columns, field.rows}, across, up), x, head + caption_room);
-    page.frame({x - 1, head + caption_room - 1, across + 2, up + 2}, picture::grey);
-    x += across + margin;
+  for (int k = 0; k < count; ++k) {
+    const Damage& field = fields[static_cast<std::size_t>(k)];
+    const int x = margin + k % per_row * (across + margin), y = head + k / per_row * pitch;
+    page.text(x, y + 14, field.caption);
+    page.place(picture::draw_field({field.psi, field.columns, field.rows}, across, up), x, y + caption_room);
+    page.frame({x - 1, y + caption_room - 1, across + 2, up + 2}, picture::grey);
   }
-  picture::draw_colour_scale(page, {x, head + caption_room, 14, height}, "ψ");
+  picture::draw_colour_scale(page, {margin + columns * (across + margin), head + caption_room, 14, up}, "ψ");
   return page;
 }
 

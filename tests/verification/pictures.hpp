@@ -36,7 +36,7 @@ struct Damage {
   double width = 0.0, height = 0.0;
 };
 
-// Side by side with one scale, the longer side of each `longest` pixels.
-picture::Canvas damage_page(const std::string& title, const std::vector<Damage>& fields, int longest);
+// `per_row` side by side with one scale, the longer side of each `longest` pixels. The fields are of one shape.
+picture::Canvas damage_page(const std::string& title, const std::vector<Damage>& fields, int longest, int per_row = 4);
 
 }  // namespace fracfarm::verification

@@ -92,9 +92,11 @@ std::vector<Row> surfing(Desk& desk) {
        {Kind{0.02, false, "H kept"}, Kind{0.05, false, "H kept"}, Kind{0.05, true, "H kept in the crack alone"}}) {
     const Track track = surf(desk, forgets, speed, k / 3.0, 1.0 / 3.0);
     const double from = 70.0 * h, to = 140.0 * h, G = per_advance(track, track.released, from, to) / Gc;
+    std::string note = fmt::format("the surface functional grows by {:.3f} Gc", per_advance(track, track.surface, from, to) / Gc);
+    if (!forgets && G > 0.5 * share + root)
+      note += "; over by what H keeps of the passing tip beside the crack: the last row leaves that out";
     rows.push_back(between(fmt::format("energy released per advance over Gc, {} c_s, {}", speed, name), "1", {root, 0.5 * share + root}, G,
-                           0.0,
-                           fmt::format("the surface functional grows by {:.3f} Gc", per_advance(track, track.surface, from, to) / Gc)));
+                           0.0, note));
     chart.lines.push_back({fmt::format("{} c_s, {}", speed, name), palette[k++], track.tip, track.released});
   }
   desk.add({"surfing", "PF-25: energy given up to damage as the tip moves; its slope is the toughness that the grid shows.",
