@@ -81,7 +81,7 @@ TEST_CASE("assembled and row kernels agree on layers, oblong cells, tractions, r
   scene.cracks = {{0.3 * scene.width, 0.1 * scene.height, 0.6 * scene.width, 0.7 * scene.height}};
   SideLoad up = pull(4.0, scene.width), part;
   up.ramp = 1e-5, up.tangential = Tangential::velocity, up.tangential_velocity = 1.0;
-  part.from = 0.1 * scene.height, part.to = 0.8 * scene.height, part.traction = {-2e6, 1e6};
+  part.from = 0.1 * scene.height, part.to = 0.8 * scene.height, part.traction = {-2e6, 1e6}, part.ramp = 3e-5;
   set_load(scene, Side::top, up);
   set_load(scene, Side::bottom, pull(0.0, scene.width));
   set_load(scene, Side::left, part);

@@ -164,7 +164,19 @@ TEST_CASE("Gauss quadrature comes as close to the corner points' waves as the gr
   const RunResult broken = run(scene);
   CHECK(broken.judgement.verdict == Verdict::failed);
   CHECK(broken.energy_residual < 0.005);
-  for (const float psi : broken.psi_failure) CHECK((psi >= 0.0f && psi <= 1.0f));
+
+  Assembled simulation(scene);  // w_0 is half a cell: the operator alone leaves 0...1 here, and heals
+  const double dt = 0.9 * simulation.stable_dt();
+  REQUIRE(simulation.start(dt));
+  double highest = 0.0, healed = 0.0;
+  for (int n = 0; n < 200; ++n) {
+    const phasefield::assembled::Vector before = simulation.state().psi;
+    REQUIRE(simulation.step(n, dt));
+    highest = std::max(highest, simulation.state().psi.maxCoeff());
+    healed = std::max(healed, (before - simulation.state().psi).maxCoeff());
+  }
+  CHECK(highest == 1.0);
+  CHECK(healed == 0.0);
 }
 
 TEST_CASE("a J2 body pays its plastic work, the ledger closes, and a share of that work breaks it sooner") {
@@ -180,7 +192,7 @@ TEST_CASE("a J2 body pays its plastic work, the ledger closes, and a share of th
                   driven = pulled_with(PlasticityModel::j2, 0.5);
   CHECK(last(elastic, "plastic_energy") == 0.0);
   CHECK(last(j2, "plastic_energy") > 0.1 * last(j2, "external_work"));
-  CHECK(j2.energy_residual < 0.01);
+  CHECK(j2.energy_residual < 5e-4);
   CHECK(j2.peak_stress < 0.9 * elastic.peak_stress);
   CHECK(driven.peak_stress < j2.peak_stress);
 }
