@@ -127,6 +127,25 @@ TEST_CASE("a quasi-static bar is in balance: both ends react alike, and with You
   CHECK(std::abs(row.stress_xx) < 1e-6 * row.stress_zz);
 }
 
+TEST_CASE("tractions in balance stretch a body that nothing holds, tractions out of balance are told") {
+  Scene scene = with(square("pbx", 6), Integrator::quasi_static);
+  SideLoad up, down;
+  up.to = down.to = scene.width;
+  up.traction = {0.0, 1e6}, down.traction = {0.0, -1e6};
+  set_load(scene, Side::top, up);
+  set_load(scene, Side::bottom, down);
+  Assembled balanced(scene);
+  REQUIRE(balanced.start(1e-6));
+  REQUIRE(balanced.step(0, 1e-6));
+  CHECK(balanced.mean_stress_zz() == Approx(1e6).epsilon(1e-4));
+  set_load(scene, Side::bottom, up);
+  Assembled pushed(scene);
+  REQUIRE(pushed.start(1e-6));
+  const auto step = pushed.step(0, 1e-6);
+  REQUIRE_FALSE(step);
+  CHECK(step.error().message.find("not in balance") != std::string::npos);
+}
+
 TEST_CASE("told displacements move their nodes and give their reactions") {
   Scene scene = with(square("pbx", 6), Integrator::quasi_static);
   phasefield::assembled::Prescription corners;

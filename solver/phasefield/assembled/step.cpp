@@ -1,5 +1,8 @@
 #include "solver/phasefield/assembled/step.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <utility>
 
 #include "solver/phasefield/assembled/anderson.hpp"
@@ -12,8 +15,9 @@ namespace {
 // Residuals over the elements' own forces. While nothing damages they are rounding: Newmark's energy balance is exact, the factor fits.
 // Else a pass only has to be finer than what the damage changes.
 constexpr double exact = 1e-15, newmark_tolerance = 1e-10, quasi_static_tolerance = 1e-8;
-constexpr double at_rest = 1e-9;    // a step that moves psi by less leaves the factor as good as new
-constexpr double reduction = 3e-2;  // of the residual, in the later passes of a step
+constexpr double at_rest = 1e-9;     // a step that moves psi by less leaves the factor as good as new
+constexpr double unbalanced = 1e-4;  // of the elements' own forces
+constexpr double reduction = 3e-2;   // of the residual, in the later passes of a step
 
 double tolerance_after(const State& state, double while_damaging) {
   return (state.psi - state.psi_previous).cwiseAbs().maxCoeff() > at_rest ? while_damaging : exact;
@@ -154,13 +158,28 @@ Result<void> newmark_step(const Model& model, State& state, Scratch& scratch, do
   return {};
 }
 
+// A corner that only keeps the body from drifting carries nothing, unless the tractions push the body away.
+Result<void> check_supports(const Model& model, const Scratch& scratch) {
+  for (const std::size_t d : model.supports) {
+    const double force = scratch.force[static_cast<Eigen::Index>(d)];
+    if (std::abs(force) > unbalanced * scratch.force_scale)
+      return fail(Fault::solver_numeric,
+                  fmt::format("the tractions are not in balance and nothing holds the body along {}: {:.4g} N/m are left over",
+                              d % 2 ? "z" : "x", force));
+  }
+  return {};
+}
+
 Result<void> quasi_static_step(const Model& model, State& state, Scratch& scratch, double now, double dt) {
   for (const Motion& motion : model.boundary.motions)
     for (const std::size_t n : motion.nodes) state.u[displacement_of(motion, n)] += dt * motion.at(now + 0.5 * dt);
   const Prescription& told = model.prescription;
   for (std::size_t k = 0; k < told.told.size(); ++k)
     state.u[2 * model.node(told.told[k].column, told.told[k].row) + (told.told[k].axis == Axis::z)] = told.displacement(k, now + dt);
-  return staggered_passes(model, {now + dt, 0.0, nullptr, tolerance_after(state, quasi_static_tolerance)}, state, scratch);
+  if (auto settled = staggered_passes(model, {now + dt, 0.0, nullptr, tolerance_after(state, quasi_static_tolerance)}, state, scratch);
+      !settled)
+    return settled;
+  return check_supports(model, scratch);
 }
 
 Result<void> advance(const Model& model, State& state, Scratch& scratch, double now, double dt) {
