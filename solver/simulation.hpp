@@ -11,6 +11,7 @@
 #include "common/failure/failure.hpp"
 #include "common/scene/scene.hpp"
 #include "solver/archive.hpp"
+#include "solver/rules.hpp"
 #include "solver/sample.hpp"
 
 namespace fracfarm {
@@ -45,6 +46,6 @@ class Simulation {
   virtual std::string kernel() const = 0;
 };
 
-std::unique_ptr<Simulation> make_phase_field(const Scene& scene);
+std::unique_ptr<Simulation> make_phase_field(const Scene& scene, const Rules& rules = {});
 
 }  // namespace fracfarm

@@ -26,7 +26,7 @@ class Run {
   Run(const Scene& scene, const RunControl& control)
       : scene_(scene),
         control_(control),
-        simulation_(make_phase_field(scene)),
+        simulation_(make_phase_field(scene, control.rules)),
         dt_(control.step_scale * scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())),
         last_step_(std::max(1LL, static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9)))),
         log_(scene, dt_) {}
@@ -147,7 +147,7 @@ class Run {
       first_step_ = n_;
       return true;
     }
-    simulation_ = make_phase_field(scene_);
+    simulation_ = make_phase_field(scene_, control_.rules);
     log_ = RunLog(scene_, dt_);
     n_ = 0, cpu_before_s_ = wall_before_s_ = 0.0;
     return false;

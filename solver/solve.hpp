@@ -13,6 +13,7 @@
 #include "common/failure/failure.hpp"
 #include "common/failure/series.hpp"
 #include "common/scene/scene.hpp"
+#include "solver/rules.hpp"
 
 namespace fracfarm {
 
@@ -24,6 +25,7 @@ struct RunControl {
   std::optional<long long> step_budget;                                       // steps of this attempt; ends like the wall budget
   const std::atomic<bool>* stop = nullptr;                                    // set by SIGTERM: save and end
   std::function<void(long long step, double time, double horizon)> progress;  // called about twice a second
+  Rules rules;                                                                // all on but in a study
   double step_scale = 1.0;                                                    // changes the result: 0.5 after SOLVER_NUMERIC
 };
 

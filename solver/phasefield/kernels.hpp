@@ -57,6 +57,7 @@ struct View {
   Real eta;
   RowLaw law;
   bool keeps_forces;                     // all of fx and fz are stored; else only those of the sides
+  bool tests_yield;                      // rows that may yield are tested; else all of them run the secant law
   const ElementRow<Real>* element_rows;  // [j] is below node row j, [j + 1] above it
   const NodeRow<Real>* node_rows;        // [j]
   const Real* column_weight;             // 1 inside, 1/2 at the sides, 0 in the pad
@@ -101,6 +102,8 @@ struct Kernels {
   // H = max(H, drive(epsilon)), energies, and the row of the psi equation, whose pins are held; returns the kept energy, J/m. Needs u of
   // the rows j - 1 to j + 1.
   double (*history)(const View<Real>&, int j);
+  // True where psi of the row's equation could rise above that of H = 0 by more than `bound` (pinned nodes apart).
+  bool (*damages)(const View<Real>&, int j, Real bound);
   // previous = 2 psi - previous within [0, 1].
   void (*guess)(const View<Real>&, int j, const Real* psi, Real* previous);
   // next += omega (z - next) with z the Jacobi image of psi, or z itself where omega is 1. Needs psi of the rows j -

@@ -13,11 +13,11 @@ bool rows_can(const Scene& scene) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_phase_field(const Scene& scene) {
+std::unique_ptr<Simulation> make_phase_field(const Scene& scene, const Rules& rules) {
   if (!rows_can(scene)) return std::make_unique<phasefield::assembled::Assembled>(scene);
   using namespace phasefield;
-  if (scene.phase_field.precision == Precision::float_) return std::make_unique<PhaseField<float>>(scene, chosen_kernels<float>());
-  return std::make_unique<PhaseField<double>>(scene, chosen_kernels<double>());
+  if (scene.phase_field.precision == Precision::float_) return std::make_unique<PhaseField<float>>(scene, chosen_kernels<float>(), rules);
+  return std::make_unique<PhaseField<double>>(scene, chosen_kernels<double>(), rules);
 }
 
 }  // namespace fracfarm

@@ -7,6 +7,7 @@
 #include "solver/boundary.hpp"
 #include "solver/phasefield/grid.hpp"
 #include "solver/phasefield/kernels.hpp"
+#include "solver/rules.hpp"
 
 namespace fracfarm::phasefield {
 
@@ -27,7 +28,8 @@ struct Model {
   double jacobi_radius = 0.0;     // bound of the Jacobi iteration's spectral radius
   double damage_tolerance = 0.0;  // largest |z - psi| of a row's last sweep, z the Jacobi image of psi
   int damage_sweeps = 0;          // of the whole grid in a step; more where the tolerance asks for it
-  bool keeps_forces = false;      // verification: forces of all nodes are stored, not of the sides only
+  Rules rules;
+  bool keeps_forces = false;  // verification: forces of all nodes are stored, not of the sides only
 };
 
 Model build_model(const Scene& scene);

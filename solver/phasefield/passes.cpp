@@ -37,6 +37,7 @@ class Sweeps {
         scratch_(scratch),
         kernels_(kernels),
         tolerance_(model.damage_tolerance),
+        local_(model.rules.sweep_where_it_moves),
         radius_(model.jacobi_radius),
         weight_(radius_) {
     const std::size_t at = model.grid.origin();
@@ -59,7 +60,7 @@ class Sweeps {
     int rounds = 0;
     for (int unsettled = count_unsettled(); unsettled > 0; unsettled = count_unsettled(), ++rounds) {
       if (rounds >= damage_sweeps_limit) return trouble();
-      if (rounds < local_rounds && 4 * unsettled < v.rows)
+      if (local_ && rounds < local_rounds && 4 * unsettled < v.rows)
         settle_rows(v);
       else
         sweep_grid(v);
@@ -105,6 +106,7 @@ class Sweeps {
   Scratch<Real>& scratch_;
   const Kernels<Real>& kernels_;
   double tolerance_;
+  bool local_;
   double radius_;
   ChebyshevWeight weight_;
   bool stale_ = false;  // rows were settled since the last sweep of the grid
@@ -114,14 +116,25 @@ class Sweeps {
   std::size_t last_ = 0;
 };
 
-}  // namespace
+// u += dt v and H. True where psi could have risen.
+template <class Real>
+bool move(const View<Real>& v, Scratch<Real>& scratch, const Kernels<Real>& kernels, Real dt) {
+  bool damages = false;
+  scratch.kept = 0.0;
+  for (int front = 0; front <= v.rows; ++front) {
+    if (front < v.rows) kernels.drift(v, front, dt);
+    if (front == 0) continue;
+    scratch.kept += kernels.history(v, front - 1);
+    damages = damages || kernels.damages(v, front - 1, static_cast<Real>(least_damage));
+  }
+  return damages;
+}
 
 template <class Real>
-Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt) {
-  std::swap(scratch.stored, scratch.stored_before);
+Result<void> move_and_sweep(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, Real dt) {
   const View<Real> v = view(model, state, scratch);
   const std::size_t at = model.grid.origin();
-  const Real *psi = state.psi.data() + at, step = static_cast<Real>(dt);
+  const Real* psi = state.psi.data() + at;
   Real* previous = state.psi_previous.data() + at;
   Sweeps<Real> sweeps(model, state, scratch, kernels);
   const int count = model.damage_sweeps;
@@ -129,7 +142,7 @@ Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Rea
   scratch.kept = 0.0;
   for (int front = 0; front < v.rows + count; ++front) {
     if (front < v.rows) {
-      kernels.drift(v, front, step);
+      kernels.drift(v, front, dt);
       kernels.guess(v, front, psi, previous);
     }
     if (front >= 1 && front <= v.rows) scratch.kept += kernels.history(v, front - 1);
@@ -137,6 +150,17 @@ Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Rea
       if (const int j = front - 1 - k; j >= 0 && j < v.rows) sweeps.row(v, static_cast<std::size_t>(k), j);
   }
   return sweeps.settle(v);
+}
+
+}  // namespace
+
+template <class Real>
+Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt) {
+  std::swap(scratch.stored, scratch.stored_before);
+  const Real step = static_cast<Real>(dt);
+  if (state.damages || !model.rules.linear_until_damage) return move_and_sweep(model, state, scratch, kernels, step);
+  state.damages = move(view(model, state, scratch), scratch, kernels, step);
+  return state.damages ? solve_damage(model, state, scratch, kernels) : Result<void>{};
 }
 
 template <class Real>

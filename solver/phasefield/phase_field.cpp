@@ -52,12 +52,14 @@ std::vector<double> coordinates(int count, double h) {
 }  // namespace
 
 template <class Real>
-PhaseField<Real>::PhaseField(const Scene& scene, const Kernels<Real>& kernels)
+PhaseField<Real>::PhaseField(const Scene& scene, const Kernels<Real>& kernels, const Rules& rules)
     : kernels_(kernels),
       initial_(scene.initial),
       model_(build_model(scene)),
       state_(make_state<Real>(model_)),
-      scratch_(make_scratch<Real>(model_)) {}
+      scratch_(make_scratch<Real>(model_)) {
+  model_.rules = rules;
+}
 
 template <class Real>
 Result<void> PhaseField<Real>::start(double dt) {
@@ -130,6 +132,7 @@ void PhaseField<Real>::save(ArchiveWriter& archive) const {
   for (const Field<Real>& field : state_.history) archive.put_array(field);
   for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
   archive.put(state_.sums);
+  archive.put(state_.damages);
   archive.put(state_.sweeps);
 }
 
@@ -141,6 +144,7 @@ bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
   for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})
     *value = archive.get<double>();
   state_.sums = archive.get<StepSums>();
+  state_.damages = archive.get<bool>();
   state_.sweeps = archive.get<long long>();
   if (archive.failed()) return false;
   refresh(model_, state_, scratch_, kernels_, n, dt);

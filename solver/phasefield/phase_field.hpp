@@ -9,7 +9,7 @@ namespace fracfarm::phasefield {
 template <class Real>
 class PhaseField final : public Simulation {
  public:
-  PhaseField(const Scene& scene, const Kernels<Real>& kernels);
+  PhaseField(const Scene& scene, const Kernels<Real>& kernels, const Rules& rules = {});
 
   double stable_dt() const override { return model_.stable_dt; }
   Result<void> start(double dt) override;

@@ -125,6 +125,7 @@ View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) 
   v.columns = grid.columns, v.rows = grid.rows, v.padded = grid.padded_columns(), v.stride = grid.stride();
   v.hx = grid.hx, v.hz = grid.hz, v.corner_area = grid.corner_area(), v.eta = static_cast<Real>(model.eta);
   v.law = model.law, v.keeps_forces = model.keeps_forces;
+  v.tests_yield = model.rules.plastic_where_it_yields;
   v.element_rows = tables.element_rows.data(), v.node_rows = tables.node_rows.data();
   v.column_weight = tables.column_weight.data();
   v.inverse_mass_x = tables.inverse_mass_x.data(), v.inverse_mass_z = tables.inverse_mass_z.data();

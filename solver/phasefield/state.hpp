@@ -25,6 +25,7 @@ struct State {
   std::array<Field<Real>, 4> history;  // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
   Field<Real> psi, psi_previous;       // of this step and the one before (its extrapolation starts the next solve)
   StepSums sums;
+  bool damages = false;          // psi could have risen since t = 0
   double external_work = 0.0;    // J/m since t = 0
   double released = 0.0;         // J/m since t = 0
   double initial_energy = 0.0;   // J/m before the boundary moved

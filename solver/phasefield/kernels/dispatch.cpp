@@ -22,6 +22,15 @@ FRACFARM_TABLE(baseline_float, float)
 
 namespace {
 
+#if defined(FRACFARM_X86_PATHS)
+// By features, since not every compiler knows the levels by name; processors with these have the rest of their level, too.
+bool runs_v3() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"); }
+bool runs_v4() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+#endif
+
 template <class Real>
 struct Runnable {
   std::array<const Kernels<Real>*, 3> tables{};
@@ -39,8 +48,8 @@ Runnable<Real> probe() {
   Runnable<Real> found;
 #if defined(FRACFARM_X86_PATHS)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("x86-64-v4")) found.add(v4_double::table, v4_float::table);
-  if (__builtin_cpu_supports("x86-64-v3")) found.add(v3_double::table, v3_float::table);
+  if (runs_v3() && runs_v4()) found.add(v4_double::table, v4_float::table);
+  if (runs_v3()) found.add(v3_double::table, v3_float::table);
 #endif
   found.add(baseline_double::table, baseline_float::table);
   return found;

@@ -102,6 +102,7 @@ INLINE void secant_history(const View& v, int j) {
 INLINE bool yields(const View& v, int j) {
   const ElementRow &above = v.element_rows[j + 1], &below = v.element_rows[j];
   if (!above.plastic && !below.plastic) return false;
+  if (!v.tests_yield) return true;
   const Around u = around(v, j);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
   const Secant n = above.secant, s = below.secant;
@@ -163,6 +164,19 @@ double history(const View& v, int j) {
   Real *source = v.source + row_at(v, j), *inverse = v.inverse_diagonal + row_at(v, j);
   for (int k = v.pin_begin[j]; k < v.pin_begin[j + 1]; ++k) source[v.pins[k]] = pinned_source, inverse[v.pins[k]] = pinned_inverse;
   return kept;
+}
+
+// source > bound (m + S), where m + S is the diagonal without the neighbours; the equation of a pinned node reads 1 = 1.
+bool damages(const View& v, int j, Real bound) {
+  const NodeRow& c = v.node_rows[j];
+  const Real *source = v.source + row_at(v, j), *inverse = v.inverse_diagonal + row_at(v, j);
+  const Real neighbours = Real(2) * c.side + c.south + c.north;
+  bool found = false;
+  for (Index i = 0; i < v.columns; ++i) {
+    const Real share = source[i] * inverse[i];
+    found = found || (share != Real(1) && !(share <= bound * (Real(1) - neighbours * inverse[i])));
+  }
+  return found;
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

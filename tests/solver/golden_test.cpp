@@ -1,0 +1,89 @@
+// Golden hashes: short runs whose every number is fixed. They hold for every instruction set that runs here, and for the same sources built
+// by clang (clang_bits.sh builds and runs this program with it). A change of the scheme changes them, and then says so in its commit.
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+
+#include "common/base/hash.hpp"
+#include "solver/phasefield/kernels.hpp"
+#include "solver/solve.hpp"
+#include "tests/solver/scenes.hpp"
+
+using namespace fracfarm;
+using namespace fracfarm::test;
+
+namespace {
+
+struct Golden {
+  const char* name;
+  Scene scene;
+  const char* in_double;
+  const char* in_float;
+};
+
+Scene with(Scene scene, void (*change)(Scene&)) {
+  change(scene);
+  return scene;
+}
+
+Scene layered() {
+  Scene scene = cracked("pbx", 21);
+  scene.width *= 1.3;
+  scene.layers = {{0.4 * scene.height, *find_material("aluminum")}, scene.layers[0]};
+  scene.phase_field.plasticity = PlasticityModel::secant;
+  SideLoad part = pull(0.0, 0.6 * scene.height);
+  part.normal_velocity.reset();
+  part.traction = {2e6, -1e6};
+  part.ramp = 2e-5;
+  set_load(scene, Side::right, part);
+  return scene;
+}
+
+std::vector<Golden> runs() {
+  std::vector<Golden> list;
+  list.push_back({"shale", cracked("shale", 40), "2e1809a3310aedad6e108e878de7b8eb", "ce967b34778b0d017dcdd6005a457a3b"});
+  list.push_back({"steel, yielding", cracked("steel", 24), "d4890a72765369cd498eb1e7e8b55069", "7ccfb79da971818e6e5aa9daf4f3fc28"});
+  list.push_back({"layers, traction", layered(), "ab1b2d50e38982960a023f532412c069", "bd0db2e270faaedad5fde15821a569d7"});
+  list.push_back({"spectral, AT1",
+                  with(cracked("pbx", 24),
+                       [](Scene& scene) { scene.phase_field.split = Split::spectral, scene.phase_field.surface = SurfaceModel::at1; }),
+                  "46d928358eb1f90b9de9632acf694311", "4d1afe587c9d5d1621742056980c8670"});
+  list.push_back({"star-convex, plane stress",
+                  with(cracked("pbx", 33),
+                       [](Scene& scene) { scene.phase_field.split = Split::star_convex, scene.phase_field.plane = Plane::stress; }),
+                  "4ddcdef97d2638962fddc693ce2e3995", "38e7fbd1bb0efcbeae851b50954873e1"});
+  list.push_back(
+      {"no split, history",
+       with(cracked("pbx", 24),
+            [](Scene& scene) { scene.phase_field.split = Split::none, scene.phase_field.crack_seeding = CrackSeeding::history; }),
+       "21031cf2046164e2e7c89b9b69d29dd5", "c9dcc9b2b81e123360eaa99b1a60e8f9"});
+  return list;
+}
+
+// Of the damage field at failure and of the series' physics.
+std::string hash_of(Scene scene, Precision precision) {
+  scene.phase_field.precision = precision;
+  const auto result = solve(scene, {});
+  REQUIRE(result);
+  std::string bytes(reinterpret_cast<const char*>(result->psi_failure.data()), result->psi_failure.size() * sizeof(float));
+  for (const char* name : {"step_time", "stress_xx", "stress_zz", "reaction_top", "kinetic_energy", "elastic_energy", "released_energy",
+                           "surface_energy", "external_work", "crack_length"}) {
+    const std::span<const double> values = result->series[name];
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  }
+  return xxh3_hex(bytes);
+}
+
+}  // namespace
+
+TEST_CASE("golden hashes hold on every instruction set, in double and in float") {
+  for (const phasefield::Kernels<double>* kernels : phasefield::runnable_kernels<double>()) {
+    ::setenv("FRACFARM_ISA", std::string(kernels->isa).c_str(), 1);
+    for (const Golden& run : runs()) {
+      INFO(run.name << ", " << kernels->isa);
+      CHECK(hash_of(run.scene, Precision::double_) == run.in_double);
+      CHECK(hash_of(run.scene, Precision::float_) == run.in_float);
+    }
+  }
+  ::unsetenv("FRACFARM_ISA");
+}

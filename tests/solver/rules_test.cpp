@@ -1,0 +1,69 @@
+#include "solver/rules.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "solver/solve.hpp"
+#include "tests/solver/scenes.hpp"
+
+using namespace fracfarm;
+using namespace fracfarm::test;
+
+namespace {
+
+RunResult run(const Scene& scene, const Rules& rules = {}) {
+  RunControl control;
+  control.rules = rules;
+  const auto result = solve(scene, control);
+  REQUIRE(result);
+  return *result;
+}
+
+double sum(std::span<const double> values) {
+  double total = 0.0;
+  for (const double value : values) total += value;
+  return total;
+}
+
+// Pulled so slowly at first that nothing can damage for a while.
+Scene ramped(SurfaceModel surface) {
+  Scene scene = cracked("pbx", 24);
+  for (const Side side : {Side::top, Side::bottom}) scene.loads[static_cast<std::size_t>(side)][0].ramp = 1e-3;
+  scene.phase_field.surface = surface;
+  scene.horizon = 6e-5;
+  return scene;
+}
+
+void check_close(const RunResult& a, const RunResult& b) {
+  CHECK(std::abs(a.steps - b.steps) <= 1);
+  CHECK(a.peak_stress == Approx(b.peak_stress).epsilon(1e-4));
+  CHECK(a.series["released_energy"].back() == Approx(b.series["released_energy"].back()).epsilon(5e-3).margin(1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("each rule left out changes a run by no more than the tolerance of its damage") {
+  for (const char* material : {"pbx", "steel"}) {
+    const Scene scene = cracked(material, 30);
+    const RunResult with = run(scene);
+    for (bool Rules::*rule : {&Rules::linear_until_damage, &Rules::plastic_where_it_yields, &Rules::sweep_where_it_moves}) {
+      Rules rules;
+      rules.*rule = false;
+      check_close(with, run(scene, rules));
+    }
+  }
+}
+
+TEST_CASE("steps are linear until something could damage, and the run is the same") {
+  for (const SurfaceModel surface : {SurfaceModel::at2, SurfaceModel::at1}) {
+    const Scene scene = ramped(surface);
+    Rules rules;
+    rules.linear_until_damage = false;
+    const RunResult with = run(scene), without = run(scene, rules);
+    CHECK(sum(with.series["solver_iterations"]) < sum(without.series["solver_iterations"]));
+    REQUIRE(with.psi_failure.size() == without.psi_failure.size());
+    for (std::size_t n = 0; n < with.psi_failure.size(); ++n) CHECK(std::abs(with.psi_failure[n] - without.psi_failure[n]) < 1e-4f);
+    CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(1e-5));
+  }
+}
