@@ -38,7 +38,17 @@ Made without_plasticity(Scene scene) {
   return make_phase_field(scene);
 }
 
+template <bool Rules::*rule>
+Made without_rule(const Scene& scene) {
+  Rules rules;
+  rules.*rule = false;
+  return make_phase_field(scene, rules);
+}
+
 constexpr Rule table[]{
+    {"linear", "no work on psi until it could rise", without_rule<&Rules::linear_until_damage>, as_it_is},
+    {"yield", "the plastic law on those rows only that yield", without_rule<&Rules::plastic_where_it_yields>, as_it_is},
+    {"moves", "after the first sweeps only rows whose psi moved", without_rule<&Rules::sweep_where_it_moves>, as_it_is},
     {"float", "numbers of 32 bits against 64", as_it_is, in_float},
     {"settle", "rows are swept until psi is good to the solver's tolerance, against 1e-9", settled_fully, as_it_is},
     {"settle-1e-3", "the same with a tolerance of 1e-3", settled_fully, [](const Scene& scene) { return settled_to(scene, 1e-3); }},
