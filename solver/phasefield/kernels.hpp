@@ -66,6 +66,7 @@ struct View {
   const int *pin_begin, *pins;  // columns of row j where psi = 1 is held: pins[pin_begin[j]] to pins[pin_begin[j + 1]]
   const int* node_force_begin;  // the same for
   const NodeForce<Real>* node_forces;
+  const Real* whole;                // 0 at pinned nodes, else 1
   Real *ux, *uz, *vx, *vz;          // m, m/s (half a step ahead)
   Real* history[4];                 // H in the quadrants, J/m^3
   Real* reduction[4];               // secant factor s in the quadrants, valid in rows that yield

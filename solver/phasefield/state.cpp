@@ -72,6 +72,8 @@ Tables<Real> make_tables(const Model& model) {
   std::sort(pinned.begin(), pinned.end());
   tables.pin_begin = row_begins(grid, pinned);
   for (const std::size_t n : pinned) tables.pins.push_back(column_of(grid, n));
+  tables.whole = grid.field<Real>(Real(1));
+  for (const std::size_t n : pinned) tables.whole[n] = Real(0);
   for (const Traction& traction : model.boundary.tractions) pulled.insert(pulled.end(), traction.nodes.begin(), traction.nodes.end());
   std::sort(pulled.begin(), pulled.end());
   pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
@@ -128,6 +130,7 @@ View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) 
   v.tests_yield = model.rules.plastic_where_it_yields;
   v.element_rows = tables.element_rows.data(), v.node_rows = tables.node_rows.data();
   v.column_weight = tables.column_weight.data();
+  v.whole = tables.whole.data() + at;
   v.inverse_mass_x = tables.inverse_mass_x.data(), v.inverse_mass_z = tables.inverse_mass_z.data();
   v.pin_begin = tables.pin_begin.data(), v.pins = tables.pins.data();
   v.node_force_begin = tables.node_force_begin.data(), v.node_forces = tables.node_forces.data();

@@ -41,7 +41,7 @@ template <class Real>
 struct Tables {
   std::vector<ElementRow<Real>> element_rows;
   std::vector<NodeRow<Real>> node_rows;
-  Field<Real> column_weight;
+  Field<Real> column_weight, whole;
   std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
   std::vector<const Real*> inverse_mass_x, inverse_mass_z;
   std::vector<int> pin_begin, pins, node_force_begin;

@@ -99,6 +99,8 @@ INLINE void secant_history(const View& v, int j) {
       });
 }
 
+// Of nodes that a crack holds nothing but the residual stiffness is left, and an open crack's strain is no strain of the metal: they do not
+// count.
 INLINE bool yields(const View& v, int j) {
   const ElementRow &above = v.element_rows[j + 1], &below = v.element_rows[j];
   if (!above.plastic && !below.plastic) return false;
@@ -106,12 +108,13 @@ INLINE bool yields(const View& v, int j) {
   const Around u = around(v, j);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
   const Secant n = above.secant, s = below.secant;
+  const Real* whole = v.whole + row_at(v, j);
   Real north = Real(0), south = Real(0);
 #pragma omp simd reduction(max : north, south)
   for (Index i = 0; i < v.columns; ++i) {
     const Quadrants e = strains(u, i, per_hx, per_hz);
-    north = larger(larger(law::von_mises_squared(n, e.nw), law::von_mises_squared(n, e.ne)), north);
-    south = larger(larger(law::von_mises_squared(s, e.sw), law::von_mises_squared(s, e.se)), south);
+    north = larger(whole[i] * larger(law::von_mises_squared(n, e.nw), law::von_mises_squared(n, e.ne)), north);
+    south = larger(whole[i] * larger(law::von_mises_squared(s, e.sw), law::von_mises_squared(s, e.se)), south);
   }
   return (above.plastic && north > n.yield * n.yield) || (below.plastic && south > s.yield * s.yield);
 }
