@@ -152,10 +152,13 @@ void check_phase_field(const Scene& scene, ProblemList& problems) {
 }
 
 double step_edge(const Scene& scene) {
+  const bool star_convex = scene.phase_field.split == Split::star_convex;
   double fastest = 0.0;
   for (const Layer& layer : scene.layers) {
     const Elasticity& c = layer.material.elasticity;
-    fastest = std::max(fastest, (std::max(c.C11, c.C33) + c.C55) / layer.material.density);
+    // A closed crack is (1 + gamma*) times as stiff as the bulk, which may be more than what the body is.
+    const double closed = star_convex ? (1.0 + scene.phase_field.star_convexity) * (c.C13 + c.C55 * (2.0 / 3.0)) : 0.0;
+    fastest = std::max({fastest, (std::max(c.C11, c.C33) + c.C55) / layer.material.density, closed / layer.material.density});
   }
   return std::min(scene.width / scene.phase_field.cells_x, scene.height / scene.phase_field.cells_z) / std::sqrt(fastest);
 }

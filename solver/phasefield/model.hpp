@@ -34,7 +34,4 @@ struct Model {
 
 Model build_model(const Scene& scene);
 
-// h / sqrt((C_max + C55) / rho) on squares; on rectangles the smaller of (C11/hx^2 + C55/hz^2) and (C33/hz^2 + C55/hx^2) at sqrt(rho / .).
-double stable_dt(const law::Stiffness<double>& C, double density, double hx, double hz);
-
 }  // namespace fracfarm::phasefield

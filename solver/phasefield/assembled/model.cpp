@@ -3,53 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/phasefield/domain.hpp"
 #include "solver/phasefield/slots.hpp"
 
 namespace fracfarm::phasefield::assembled {
 namespace {
 
-const Material& material_at(const Scene& scene, double z) {
-  for (const Layer& layer : scene.layers)
-    if (&layer == &scene.layers.back() || z < layer.below) return layer.material;
-  return scene.layers.back().material;
-}
-
-double width_of(const LengthScale& scale, const Material& material) {
-  if (scale.kind == LengthScale::Kind::metres) return scale.metres;
-  return scale.kind == LengthScale::Kind::half ? 0.5 * material.characteristic_width : material.characteristic_width;
-}
-
 ElementRow element_row(const Material& material, const PhaseFieldSettings& settings) {
-  const double width = width_of(settings.length_scale, material);
-  const auto surface = settings.surface == SurfaceModel::at1 ? law::at1(material.Gc, width) : law::at2(material.Gc, width);
-  return {make_law(material, settings), surface, material.Gc, width, material.density};
-}
-
-double edge_of_central_differences(const Material& material, const PhaseFieldSettings& settings, const Grid& grid) {
-  const Elasticity& given = material.elasticity;
-  law::Stiffness<double> C{given.C11, given.C13, given.C33, given.C55};
-  if (settings.plane == Plane::stress) C = law::plane_stress(C);
-  const double per_xx = 1.0 / (grid.hx * grid.hx), per_zz = 1.0 / (grid.hz * grid.hz);
-  // Broken material under pressure is as stiff as the star-convex split makes it, (1 + gamma*) K.
-  const double gamma = settings.split == Split::star_convex ? settings.star_convexity : 0.0;
-  const double closed = (1.0 + gamma) * (C.C13 + 2.0 * C.C55 * (settings.plane == Plane::stress ? 1.0 / 2.0 : 1.0 / 3.0));
-  return std::sqrt(material.density /
-                   std::max({C.C11 * per_xx + C.C55 * per_zz, C.C33 * per_zz + C.C55 * per_xx, closed * std::max(per_xx, per_zz)}));
-}
-
-SideNodes side_nodes(const Model& model) {
-  const Grid& grid = model.grid;
-  SideNodes nodes;
-  const auto add = [&](Side side, int count, double h, auto index) {
-    for (int k = 0; k < count; ++k)
-      nodes[static_cast<std::size_t>(side)].push_back(
-          {static_cast<std::size_t>(index(k)), k * h, k > 0 ? (k - 0.5) * h : 0.0, k + 1 < count ? (k + 0.5) * h : (count - 1) * h});
-  };
-  add(Side::left, grid.rows, grid.hz, [&](int k) { return model.node(0, k); });
-  add(Side::right, grid.rows, grid.hz, [&](int k) { return model.node(grid.columns - 1, k); });
-  add(Side::bottom, grid.columns, grid.hx, [&](int k) { return model.node(k, 0); });
-  add(Side::top, grid.columns, grid.hx, [&](int k) { return model.node(k, grid.rows - 1); });
-  return nodes;
+  return {make_law(material, settings), surface_law(material, settings), material.Gc, length_scale(material, settings), material.density};
 }
 
 void set_rows(Model& model, const Scene& scene) {
@@ -60,7 +21,8 @@ void set_rows(Model& model, const Scene& scene) {
     model.element_rows.push_back(element_row(material, model.settings));
     model.linear = model.linear && is_linear(model.element_rows.back().law);
     model.yields = model.yields || std::holds_alternative<PlasticLaw>(model.element_rows.back().law);
-    model.stable_dt = std::min(model.stable_dt, edge_of_central_differences(material, model.settings, model.grid));
+    model.stable_dt = std::min(model.stable_dt,
+                               phasefield::stable_dt(stiffness_of(material, model.settings), material.density, model.settings, model.grid));
     for (int i = 0; i < model.grid.cells_x(); ++i)
       for (const int n : model.nodes_of(i, j))
         for (const int axis : {0, 1}) model.mass[2 * n + axis] += model.element.weight * material.density;
@@ -128,10 +90,10 @@ Model build_model(const Scene& scene, Prescription prescription) {
   Model model;
   model.settings = scene.phase_field;
   const PhaseFieldSettings& settings = model.settings;
-  model.grid = {settings.cells_x + 1, settings.cells_z + 1, scene.width / settings.cells_x, scene.height / settings.cells_z};
+  model.grid = make_grid(scene);
   model.element = make_element(settings.quadrature, model.grid.hx, model.grid.hz);
   set_rows(model, scene);
-  model.boundary = build_boundary(scene, side_nodes(model));
+  model.boundary = build_boundary(scene, side_nodes(model.grid, [&](int column, int row) { return model.node(column, row); }));
   model.prescription = std::move(prescription);
   model.mask = held_mask(settings.crack_seeding, scene.cracks, model.grid);
   number_equations(model);

@@ -95,6 +95,27 @@ class NewtonSolve {
   double inertia_scale_ = 0.0;  // N/m, of the two terms whose difference is the inertia
 };
 
+// A x = b in the unknowns sqrt(diagonal) x, so that the tolerance holds where the drive is small beside where it is huge.
+class ScaledSystem {
+ public:
+  ScaledSystem(Eigen::SparseMatrix<double> lower, const Vector& b) : matrix_(std::move(lower)), scale_(matrix_.diagonal().cwiseSqrt()) {
+    for (int column = 0; column < matrix_.outerSize(); ++column)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, column); entry; ++entry)
+        entry.valueRef() /= scale_[entry.row()] * scale_[entry.col()];
+    b_ = b.cwiseQuotient(scale_);
+  }
+  template <class Solver>
+  Vector solve(Solver& solver, const Vector& guess) const {
+    solver.compute(matrix_);
+    const Vector scaled = solver.solveWithGuess(b_, guess.cwiseProduct(scale_));
+    return scaled.cwiseQuotient(scale_);
+  }
+
+ private:
+  Eigen::SparseMatrix<double> matrix_;
+  Vector scale_, b_;
+};
+
 }  // namespace
 
 Result<void> solve_displacement(const Model& model, const Balance& balance, State& state, Scratch& scratch) {
@@ -106,21 +127,22 @@ Result<void> solve_damage(const Model& model, const Vector& guess, const Vector&
   Vector start(model.psi_equations);
   for (std::size_t n = 0; n < model.psi_equation.size(); ++n)
     if (model.psi_equation[n] >= 0) start[model.psi_equation[n]] = guess[static_cast<Eigen::Index>(n)];
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower> solver(scratch.damage.lower());
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::IdentityPreconditioner> solver;
   solver.setTolerance(model.damage_tolerance);
   solver.setMaxIterations(damage_iterations_limit);
-  const Vector psi = solver.solveWithGuess(scratch.damage_source, start);
+  const Vector psi = ScaledSystem(scratch.damage.lower(), scratch.damage_source).solve(solver, start);
   state.iterations += solver.iterations();
   if (solver.info() != Eigen::Success || !psi.allFinite())
     return fail(Fault::solver_numeric,
                 fmt::format("the phase-field equation did not converge: {} iterations, residual {:.1e}, limit {:.1e}", solver.iterations(),
                             solver.error(), model.damage_tolerance));
+  // The corner-quadrature operator bounds its solution, and what the iterations leave beyond is cut; Gauss points need the bounds imposed.
   const bool imposed = model.settings.quadrature == Quadrature::gauss;
   for (std::size_t n = 0; n < model.psi_equation.size(); ++n) {
     if (model.psi_equation[n] < 0) continue;
     const auto at = static_cast<Eigen::Index>(n);
     const double value = psi[model.psi_equation[n]];
-    state.psi[at] = imposed ? std::clamp(value, std::clamp(floor[at], 0.0, 1.0), 1.0) : value;
+    state.psi[at] = imposed ? std::clamp(value, std::clamp(floor[at], 0.0, 1.0), 1.0) : std::clamp(value, 0.0, 1.0);
   }
   return {};
 }
