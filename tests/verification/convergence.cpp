@@ -176,6 +176,7 @@ std::vector<Row> convergence(Desk& desk) {
     for (const double e : studies[k].error) errors += fmt::format("{}{:.2e}", errors.empty() ? "" : ", ", e);
     rows.push_back(between(studies[k].name + ": slope", "1", {1.8, INFINITY}, studies[k].slope(), 0.0, "errors " + errors));
     chart.lines.push_back(line_of(studies[k], palette[k]));
+    chart.lines.back().name = std::array{"H given", "elastic", "damaging: psi", "damaging: u"}[k];  // room for all in the legend
   }
   rows[2].note += fmt::format("; psi up to {:.3f}", largest_psi);
   chart.lines.push_back({"slope 2", picture::grey, {0.0, 3.0}, {0.0, -6.0}});
