@@ -37,18 +37,32 @@ std::vector<CrackDirection> watched_directions(const Scene& scene) {
   return directions;
 }
 
-// Most steps end at the first line: a path needs a cracked node on both sides.
-bool FailureWatch::is_through(const Simulation& simulation, CrackDirection direction) {
+// A path needs a cracked node on both sides.
+bool FailureWatch::reaches_both_sides(const Simulation& simulation, CrackDirection direction) {
   const bool across = direction == CrackDirection::left_right;
-  if (!simulation.crack_reaches(across ? Side::left : Side::bottom, through_crack_threshold)) return false;
-  if (!simulation.crack_reaches(across ? Side::right : Side::top, through_crack_threshold)) return false;
+  return simulation.crack_reaches(across ? Side::left : Side::bottom, through_crack_threshold) &&
+         simulation.crack_reaches(across ? Side::right : Side::top, through_crack_threshold);
+}
+
+bool FailureWatch::is_through(const Simulation& simulation, CrackDirection direction) {
+  if (!reaches_both_sides(simulation, direction)) return false;
   simulation.copy_damage(damage_);
   visited_.resize(damage_.size());
   return joins_sides({damage_, simulation.columns(), simulation.rows()}, through_crack_threshold, direction, visited_);
 }
 
+// The same cracked nodes give the same answer as a step ago.
+bool FailureWatch::cracks_changed(const Simulation& simulation) {
+  simulation.mark_cracked(through_crack_threshold, cracked_);
+  if (cracked_ == searched_) return false;
+  searched_ = cracked_;
+  return true;
+}
+
 void FailureWatch::after_step(const Simulation& simulation, double time) {
   if (through_crack_) return;
+  const auto reaches = [&](CrackDirection direction) { return reaches_both_sides(simulation, direction); };
+  if (std::none_of(directions_.begin(), directions_.end(), reaches) || !cracks_changed(simulation)) return;
   for (const CrackDirection direction : directions_) {
     if (!is_through(simulation, direction)) continue;
     through_crack_ = time;

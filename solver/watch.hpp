@@ -33,7 +33,9 @@ class FailureWatch {
   void load(ArchiveReader& archive);
 
  private:
+  static bool reaches_both_sides(const Simulation& simulation, CrackDirection direction);
   bool is_through(const Simulation& simulation, CrackDirection direction);
+  bool cracks_changed(const Simulation& simulation);
 
   std::vector<CrackDirection> directions_;
   std::optional<double> through_crack_;
@@ -41,6 +43,7 @@ class FailureWatch {
   std::vector<float> psi_through_, psi_dropped_;
   std::vector<double> damage_;  // scratch
   std::vector<unsigned char> visited_;
+  std::vector<unsigned char> cracked_, searched_;  // nodes now, and when a path was last looked for
 };
 
 // The damage field as it is stored.

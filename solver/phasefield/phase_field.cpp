@@ -1,6 +1,8 @@
 #include "solver/phasefield/phase_field.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "solver/phasefield/passes.hpp"
 
@@ -106,6 +108,20 @@ SampleRow PhaseField<Real>::sample(long long n, double dt) const {
   s.dt = dt;
   s.solver_iterations = state_.sweeps;
   return s;
+}
+
+template <class Real>
+void PhaseField<Real>::mark_cracked(double threshold, std::vector<unsigned char>& cracked) const {
+  const Grid& grid = model_.grid;
+  cracked.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  const int columns = grid.columns;
+  Real limit = static_cast<Real>(threshold);  // the largest number that is not above the threshold
+  if (static_cast<double>(limit) > threshold) limit = std::nextafter(limit, -std::numeric_limits<Real>::infinity());
+  for (int j = 0; j < grid.rows; ++j) {
+    const Real* __restrict row = state_.psi.data() + grid.index(0, j);
+    unsigned char* __restrict out = cracked.data() + static_cast<std::ptrdiff_t>(j) * grid.columns;
+    for (int i = 0; i < columns; ++i) out[i] = row[i] > limit;
+  }
 }
 
 template <class Real>

@@ -1,5 +1,7 @@
 #include "solver/phasefield/assembled/assembled.hpp"
 
+#include <algorithm>
+
 #include "solver/phasefield/assembled/points.hpp"
 
 namespace fracfarm::phasefield::assembled {
@@ -32,6 +34,11 @@ Assembled::Assembled(const Scene& scene, Prescription prescription)
       model_(build_model(scene, std::move(prescription))),
       state_(make_state(model_)),
       scratch_(make_scratch(model_)) {}
+
+void Assembled::mark_cracked(double threshold, std::vector<unsigned char>& cracked) const {
+  cracked.resize(static_cast<std::size_t>(state_.psi.size()));
+  std::transform(state_.psi.begin(), state_.psi.end(), cracked.begin(), [&](double psi) { return psi > threshold; });
+}
 
 bool Assembled::crack_reaches(Side side, double threshold) const {
   const bool vertical = side == Side::left || side == Side::right;
