@@ -32,7 +32,7 @@ Result<void> RunLog::note(const Simulation& simulation, long long n) {
   if (row_is_due(simulation, n))
     if (auto healthy = add_row(simulation, n); !healthy) return healthy;
   if (frame_interval_ > 0.0 && step_of_frame(next_frame_, frame_interval_, dt_) <= n) {
-    frames_.push_back({time, damage_field(simulation)});
+    frames_.push_back({time, simulation.stored_damage()});
     next_frame_ = std::max(next_frame_ + 1, first_frame_after(n, frame_interval_, dt_));
   }
   return {};

@@ -34,6 +34,7 @@ class Simulation {
   virtual int columns() const = 0;
   virtual int rows() const = 0;
   virtual void copy_damage(std::vector<double>& values) const = 0;
+  virtual std::vector<float> stored_damage() const = 0;  // as a record keeps it
   // 1 where damage is above the threshold, else 0.
   virtual void mark_cracked(double threshold, std::vector<unsigned char>& cracked) const = 0;
   virtual std::vector<unsigned char> mask() const = 0;

@@ -49,7 +49,7 @@ class Run {
   Result<void> resume_or_start() {
     if (resume()) return {};
     if (auto started = simulation_->start(dt_); !started) return numeric_trouble(started.error());
-    psi_initial_ = damage_field(*simulation_);
+    psi_initial_ = simulation_->stored_damage();
     return log_.note(*simulation_, 0);
   }
 
@@ -108,7 +108,7 @@ class Run {
   std::vector<float> failure_field(std::string_view rule) const {
     if (rule == "through_crack") return log_.watch().psi_through();
     if (rule == "stress_drop" && !log_.watch().psi_dropped().empty()) return log_.watch().psi_dropped();
-    return damage_field(*simulation_);
+    return simulation_->stored_damage();
   }
 
   // Whose checkpoint it is: the job, the build and the step size; any of them changes the numbers.

@@ -6,28 +6,6 @@
 
 namespace fracfarm {
 
-namespace {
-
-// The damage equation is solved to a tolerance, so psi may leave [0, 1] by about as much; that is stored as the bound. More is stored as
-// it is, for the validator to find.
-constexpr double bound_tolerance = 1e-7;
-
-float stored_damage(double psi) {
-  if (psi < 0.0 && psi >= -bound_tolerance) return 0.0f;
-  if (psi > 1.0 && psi <= 1.0 + bound_tolerance) return 1.0f;
-  return static_cast<float>(psi);
-}
-
-}  // namespace
-
-std::vector<float> damage_field(const Simulation& simulation) {
-  std::vector<double> values;
-  simulation.copy_damage(values);
-  std::vector<float> stored(values.size());
-  std::transform(values.begin(), values.end(), stored.begin(), stored_damage);
-  return stored;
-}
-
 std::vector<CrackDirection> watched_directions(const Scene& scene) {
   const bool vertical = is_loaded(scene, Side::top) || is_loaded(scene, Side::bottom);
   const bool horizontal = is_loaded(scene, Side::left) || is_loaded(scene, Side::right);
@@ -66,7 +44,7 @@ void FailureWatch::after_step(const Simulation& simulation, double time) {
   for (const CrackDirection direction : directions_) {
     if (!is_through(simulation, direction)) continue;
     through_crack_ = time;
-    psi_through_ = damage_field(simulation);
+    psi_through_ = simulation.stored_damage();
     return;
   }
 }
@@ -76,7 +54,7 @@ void FailureWatch::at_row(const Simulation& simulation, double mean_stress) {
     peak_ = mean_stress;
     psi_dropped_.clear();
   } else if (drops_at(mean_stress)) {
-    psi_dropped_ = damage_field(simulation);
+    psi_dropped_ = simulation.stored_damage();
   }
 }
 

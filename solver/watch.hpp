@@ -46,7 +46,4 @@ class FailureWatch {
   std::vector<unsigned char> cracked_, searched_;  // nodes now, and when a path was last looked for
 };
 
-// The damage field as it is stored.
-std::vector<float> damage_field(const Simulation& simulation);
-
 }  // namespace fracfarm

@@ -51,6 +51,13 @@ std::vector<double> coordinates(int count, double h) {
   return at;
 }
 
+// A field without its ghosts and pads.
+template <class From, class To>
+void copy_rows(const Grid& grid, const From* from, To* to) {
+  for (int j = 0; j < grid.rows; ++j)
+    std::copy_n(from + grid.index(0, j), grid.columns, to + static_cast<std::ptrdiff_t>(j) * grid.columns);
+}
+
 }  // namespace
 
 template <class Real>
@@ -126,10 +133,15 @@ void PhaseField<Real>::mark_cracked(double threshold, std::vector<unsigned char>
 
 template <class Real>
 void PhaseField<Real>::copy_damage(std::vector<double>& values) const {
-  const Grid& grid = model_.grid;
-  values.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
-  for (int j = 0; j < grid.rows; ++j)
-    std::copy_n(state_.psi.data() + grid.index(0, j), grid.columns, values.data() + static_cast<std::ptrdiff_t>(j) * grid.columns);
+  values.resize(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
+  copy_rows(model_.grid, state_.psi.data(), values.data());
+}
+
+template <class Real>
+std::vector<float> PhaseField<Real>::stored_damage() const {
+  std::vector<float> values(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
+  copy_rows(model_.grid, state_.psi.data(), values.data());
+  return values;
 }
 
 template <class Real>

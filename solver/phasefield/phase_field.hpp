@@ -22,6 +22,7 @@ class PhaseField final : public Simulation {
   int columns() const override { return model_.grid.columns; }
   int rows() const override { return model_.grid.rows; }
   void copy_damage(std::vector<double>& values) const override;
+  std::vector<float> stored_damage() const override;
   void mark_cracked(double threshold, std::vector<unsigned char>& cracked) const override;
   std::vector<unsigned char> mask() const override { return model_.mask; }
   std::vector<double> x() const override;

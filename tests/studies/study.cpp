@@ -60,7 +60,7 @@ Ending ending_of(const Scene& scene, Simulation& simulation) {
   FailureWatch watch(watched_directions(scene));
   const double start_s = thread_cpu_s();
   Result<void> moved = simulation.start(ending.dt);
-  const std::vector<float> psi_initial = damage_field(simulation);
+  const std::vector<float> psi_initial = simulation.stored_damage();
   long long n = 0;
   for (; moved && !watch.through_crack() && static_cast<double>(n) * ending.dt < scene.horizon; ++n) {
     moved = simulation.step(n, ending.dt);
@@ -77,7 +77,7 @@ Ending ending_of(const Scene& scene, Simulation& simulation) {
   const bool through = watch.through_crack().has_value();
   ending.time = through ? watch.through_crack() : ending.stress_drop;
   ending.rule = !moved ? "diverged" : through ? "through_crack" : ending.stress_drop ? "stress_drop" : "horizon";
-  ending.psi = through ? watch.psi_through() : ending.stress_drop ? watch.psi_dropped() : damage_field(simulation);
+  ending.psi = through ? watch.psi_through() : ending.stress_drop ? watch.psi_dropped() : simulation.stored_damage();
   return ending;
 }
 
