@@ -1,4 +1,4 @@
-// fracfarm-bench: Google Benchmark over the parts of a run. Each file of this folder is a family; --benchmark_filter=record runs one.
+// fracfarm-timings: Google Benchmark over the parts of a run. Each file of this folder is a family; --benchmark_filter=record runs one.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

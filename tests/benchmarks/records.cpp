@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 class Folder {
  public:
-  Folder() : path_(fs::temp_directory_path() / ("fracfarm-bench-" + std::to_string(::getpid()))) { fs::create_directories(path_); }
+  Folder() : path_(fs::temp_directory_path() / ("fracfarm-timings-" + std::to_string(::getpid()))) { fs::create_directories(path_); }
   ~Folder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
