@@ -25,7 +25,7 @@ RunLog::RunLog(const Scene& scene, double dt)
       keeps_ledger_(scene.phase_field.integrator != Integrator::quasi_static),
       watch_(watched_directions(scene)) {}
 
-Result<void> RunLog::note(const Simulation& simulation, long long n) {
+Result<void> RunLog::note(const GridSimulation& simulation, long long n) {
   const double time = static_cast<double>(n) * dt_;
   peak_stress_ = std::max(peak_stress_, simulation.mean_stress_zz());
   if (n > 0) watch_.after_step(simulation, time);
@@ -38,11 +38,11 @@ Result<void> RunLog::note(const Simulation& simulation, long long n) {
   return {};
 }
 
-bool RunLog::row_is_due(const Simulation& simulation, long long n) const {
+bool RunLog::row_is_due(const GridSimulation& simulation, long long n) const {
   return n % steps_per_row_ == 0 || watch_.drops_at(simulation.mean_stress_zz());
 }
 
-Result<void> RunLog::add_row(const Simulation& simulation, long long n) {
+Result<void> RunLog::add_row(const GridSimulation& simulation, long long n) {
   SampleRow sample = simulation.sample(n, dt_);
   const long long sweeps = sample.solver_iterations;
   sample.solver_iterations -= last_.solver_iterations;
@@ -71,7 +71,7 @@ Result<void> RunLog::check_health(long long n) const {
   return {};
 }
 
-Result<void> RunLog::close(const Simulation& simulation, long long n) {
+Result<void> RunLog::close(const GridSimulation& simulation, long long n) {
   const bool stored = series_["step_time"].back() == static_cast<double>(n) * dt_;
   return stored ? Result<void>{} : add_row(simulation, n);
 }
@@ -91,7 +91,7 @@ void RunLog::save(ArchiveWriter& archive) const {
   for (const double value : {peak_stress_, largest_work_, largest_energy_, largest_residual_}) archive.put(value);
 }
 
-bool RunLog::load(ArchiveReader& archive, const Simulation& simulation) {
+bool RunLog::load(ArchiveReader& archive, const GridSimulation& simulation) {
   const std::size_t nodes = static_cast<std::size_t>(simulation.columns()) * static_cast<std::size_t>(simulation.rows());
   watch_.load(archive);
   for (Column& column : series_.columns) {

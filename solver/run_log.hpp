@@ -17,9 +17,9 @@ class RunLog {
   RunLog(const Scene& scene, double dt);
 
   // After the step that made n: watch, row, frame where they are due. Errors: SOLVER_NUMERIC.
-  Result<void> note(const Simulation& simulation, long long n);
+  Result<void> note(const GridSimulation& simulation, long long n);
   // The last instant becomes a row too. Errors: SOLVER_NUMERIC.
-  Result<void> close(const Simulation& simulation, long long n);
+  Result<void> close(const GridSimulation& simulation, long long n);
 
   const FailureWatch& watch() const { return watch_; }
   const Series& series() const { return series_; }
@@ -28,11 +28,11 @@ class RunLog {
   double worst_residual() const;  // largest |residual| over largest external work
 
   void save(ArchiveWriter& archive) const;
-  bool load(ArchiveReader& archive, const Simulation& simulation);
+  bool load(ArchiveReader& archive, const GridSimulation& simulation);
 
  private:
-  bool row_is_due(const Simulation& simulation, long long n) const;
-  Result<void> add_row(const Simulation& simulation, long long n);
+  bool row_is_due(const GridSimulation& simulation, long long n) const;
+  Result<void> add_row(const GridSimulation& simulation, long long n);
   Result<void> check_health(long long n) const;
 
   double dt_;

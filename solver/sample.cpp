@@ -45,7 +45,8 @@ std::string unit_of(std::string_view name) {
 }  // namespace
 
 double energy_residual(const SampleRow& now, double initial_energy) {
-  return now.kinetic_energy + now.elastic_energy + now.released_energy + now.plastic_energy - initial_energy - now.external_work;
+  return now.kinetic_energy + now.elastic_energy + now.released_energy + now.plastic_energy + now.fracture_energy + now.viscous_energy +
+         now.contact_energy + now.friction_energy - initial_energy - now.external_work;
 }
 
 std::span<const SeriesColumn> series_columns() { return table; }

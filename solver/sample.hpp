@@ -18,6 +18,10 @@ struct SampleRow {
   double elastic_energy = 0.0;       // J/m, stored and degraded; the potential of the secant law where that yields
   double released_energy = 0.0;      // J/m, drop of the stored energy by degradation at fixed strain, since t = 0
   double plastic_energy = 0.0;       // J/m, degraded plastic work since t = 0
+  double fracture_energy = 0.0;      // J/m, work of the joints that is gone (FDEM)
+  double viscous_energy = 0.0;       // J/m, dissipated by viscosity
+  double contact_energy = 0.0;       // J/m, stored in contacts
+  double friction_energy = 0.0;      // J/m, dissipated by friction
   double surface_energy = 0.0;       // J/m, AT2 functional less its value at t = 0
   double external_work = 0.0;        // J/m
   double energy_residual = 0.0;      // J/m, see energy_residual() below
@@ -26,7 +30,8 @@ struct SampleRow {
   long long solver_iterations = 0;   // sweeps of the psi equation since t = 0; the series holds their growth from row to row
 };
 
-// The ledger: kinetic + elastic + released + plastic - what was there at t = 0 - external work, which is 0 for an exact scheme. J/m.
+// The ledger: kinetic + elastic + released + plastic + fracture + viscous + contact + friction - what was there at t = 0 - external work,
+// which is 0 for an exact scheme. J/m.
 double energy_residual(const SampleRow& now, double initial_energy);
 
 struct SeriesColumn {

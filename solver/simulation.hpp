@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/base/result.hpp"
-#include "common/failure/failure.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/triangle_mesh.hpp"
 #include "solver/archive.hpp"
 #include "solver/rules.hpp"
 #include "solver/sample.hpp"
@@ -27,19 +27,8 @@ class Simulation {
   virtual Result<void> step(long long n, double dt) = 0;
 
   virtual double mean_stress_zz() const = 0;  // Pa, after each step
-  virtual bool crack_reaches(Side side, double threshold) const = 0;
   virtual SampleRow sample(long long n, double dt) const = 0;
-
-  // Damage on the nodes, row 0 at the bottom.
-  virtual int columns() const = 0;
-  virtual int rows() const = 0;
-  virtual void copy_damage(std::vector<double>& values) const = 0;
-  virtual std::vector<float> stored_damage() const = 0;  // as a record keeps it
-  // 1 where damage is above the threshold, else 0.
-  virtual void mark_cracked(double threshold, std::vector<unsigned char>& cracked) const = 0;
-  virtual std::vector<unsigned char> mask() const = 0;
-  virtual std::vector<double> x() const = 0;  // m
-  virtual std::vector<double> z() const = 0;  // m
+  virtual std::vector<float> stored_damage() const = 0;  // as a record keeps it: by node of a grid, by edge of a mesh
 
   // Exactly what a restart needs. After load, steps give the same bits as if the run had never stopped.
   virtual void save(ArchiveWriter& archive) const = 0;
@@ -49,6 +38,30 @@ class Simulation {
   virtual std::string kernel() const = 0;
 };
 
-std::unique_ptr<Simulation> make_phase_field(const Scene& scene, const Rules& rules = {});
+// Damage on the nodes of a regular grid, row 0 at the bottom.
+class GridSimulation : public Simulation {
+ public:
+  virtual int columns() const = 0;
+  virtual int rows() const = 0;
+  virtual std::vector<double> x() const = 0;  // m
+  virtual std::vector<double> z() const = 0;  // m
+  virtual std::vector<unsigned char> mask() const = 0;
+  virtual void copy_damage(std::vector<double>& values) const = 0;
+  // 1 where damage is above the threshold, else 0.
+  virtual void mark_cracked(double threshold, std::vector<unsigned char>& cracked) const = 0;
+  virtual bool crack_reaches(Side side, double threshold) const = 0;
+};
+
+enum class BreakMode : unsigned char { none = 0, tension = 1, shear = 2, mixed = 3 };
+
+// Damage on the edges between the triangles of a mesh: in [0, 1], 1 is broken; 2 on edges that were open from the start.
+class MeshSimulation : public Simulation {
+ public:
+  virtual const TriangleMesh& mesh() const = 0;
+  virtual std::vector<double> break_time() const = 0;         // s by edge, not a number where it never broke
+  virtual std::vector<unsigned char> break_mode() const = 0;  // BreakMode by edge
+};
+
+std::unique_ptr<GridSimulation> make_phase_field(const Scene& scene, const Rules& rules = {});
 
 }  // namespace fracfarm

@@ -172,7 +172,7 @@ class Run {
   SystemClock clock_;
   const double start_s_ = clock_.monotonic_s();
   const double cpu_start_s_ = thread_cpu_s();
-  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<GridSimulation> simulation_;
   double dt_;
   long long last_step_;
   RunLog log_;

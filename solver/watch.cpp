@@ -16,13 +16,13 @@ std::vector<CrackDirection> watched_directions(const Scene& scene) {
 }
 
 // A path needs a cracked node on both sides.
-bool FailureWatch::reaches_both_sides(const Simulation& simulation, CrackDirection direction) {
+bool FailureWatch::reaches_both_sides(const GridSimulation& simulation, CrackDirection direction) {
   const bool across = direction == CrackDirection::left_right;
   return simulation.crack_reaches(across ? Side::left : Side::bottom, through_crack_threshold) &&
          simulation.crack_reaches(across ? Side::right : Side::top, through_crack_threshold);
 }
 
-bool FailureWatch::is_through(const Simulation& simulation, CrackDirection direction) {
+bool FailureWatch::is_through(const GridSimulation& simulation, CrackDirection direction) {
   if (!reaches_both_sides(simulation, direction)) return false;
   simulation.copy_damage(damage_);
   visited_.resize(damage_.size());
@@ -30,14 +30,14 @@ bool FailureWatch::is_through(const Simulation& simulation, CrackDirection direc
 }
 
 // The same cracked nodes give the same answer as a step ago.
-bool FailureWatch::cracks_changed(const Simulation& simulation) {
+bool FailureWatch::cracks_changed(const GridSimulation& simulation) {
   simulation.mark_cracked(through_crack_threshold, cracked_);
   if (cracked_ == searched_) return false;
   searched_ = cracked_;
   return true;
 }
 
-void FailureWatch::after_step(const Simulation& simulation, double time) {
+void FailureWatch::after_step(const GridSimulation& simulation, double time) {
   if (through_crack_) return;
   const auto reaches = [&](CrackDirection direction) { return reaches_both_sides(simulation, direction); };
   if (std::none_of(directions_.begin(), directions_.end(), reaches) || !cracks_changed(simulation)) return;
@@ -49,7 +49,7 @@ void FailureWatch::after_step(const Simulation& simulation, double time) {
   }
 }
 
-void FailureWatch::at_row(const Simulation& simulation, double mean_stress) {
+void FailureWatch::at_row(const GridSimulation& simulation, double mean_stress) {
   if (mean_stress > peak_) {
     peak_ = mean_stress;
     psi_dropped_.clear();

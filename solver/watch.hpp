@@ -18,9 +18,9 @@ class FailureWatch {
   explicit FailureWatch(std::vector<CrackDirection> directions) : directions_(std::move(directions)) {}
 
   // After a step that ended at `time` (s): notes the first through crack and its field.
-  void after_step(const Simulation& simulation, double time);
+  void after_step(const GridSimulation& simulation, double time);
   // At a row of the series: keeps the field of the first row below a tenth of the largest row so far, and drops it when a larger row comes.
-  void at_row(const Simulation& simulation, double mean_stress);
+  void at_row(const GridSimulation& simulation, double mean_stress);
 
   // True where this mean stress would be the first below a tenth of the largest row: its step must be a row.
   bool drops_at(double mean_stress) const { return peak_ > 0.0 && psi_dropped_.empty() && mean_stress < stress_drop_fraction * peak_; }
@@ -33,9 +33,9 @@ class FailureWatch {
   void load(ArchiveReader& archive);
 
  private:
-  static bool reaches_both_sides(const Simulation& simulation, CrackDirection direction);
-  bool is_through(const Simulation& simulation, CrackDirection direction);
-  bool cracks_changed(const Simulation& simulation);
+  static bool reaches_both_sides(const GridSimulation& simulation, CrackDirection direction);
+  bool is_through(const GridSimulation& simulation, CrackDirection direction);
+  bool cracks_changed(const GridSimulation& simulation);
 
   std::vector<CrackDirection> directions_;
   std::optional<double> through_crack_;

@@ -23,6 +23,7 @@ Material pbx() {
   material.characteristic_width = 0.004;
   material.cohesion = Cohesion{.friction = 0.6, .tensile_strength = 0.5e6, .shear_strength = 2.0e6, .GI = 125, .GII = 500};
   material.default_horizon = 1000e-6;
+  material.fdem_horizon = 4000e-6;
   return material;
 }
 

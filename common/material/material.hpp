@@ -48,6 +48,7 @@ struct Material {
   double characteristic_width = 0.0;     // m; the text's 2 w_0
   std::optional<Cohesion> cohesion;
   double default_horizon = 1.0e-3;  // s, phase field, CENSORED after it
+  double fdem_horizon = 2.0e-3;     // s, the same for FDEM
   bool operator==(const Material&) const = default;
 };
 

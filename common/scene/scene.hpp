@@ -12,7 +12,7 @@
 
 namespace fracfarm {
 
-enum class Method { phase_field };
+enum class Method { phase_field, fdem, drill };
 enum class CrackSet { orthogonal, oblique };
 
 // A crack, from end to end (m).
@@ -54,8 +54,8 @@ struct Initial {
   bool operator==(const Initial&) const = default;
 };
 
-enum class Stop { failure, horizon };
-enum class StepControl { fixed, adaptive };  // adaptive: a run that ends SOLVER_NUMERIC begins again with half the step
+enum class Stop { failure, drop10, horizon };  // drop10: fdem only, 1.8 times the time of the stress drop
+enum class StepControl { fixed, adaptive };    // adaptive: a run that ends SOLVER_NUMERIC begins again with half the step
 enum class CrackSeeding { slot, nodes, history };
 enum class PlasticityModel { none, secant, j2 };
 enum class SurfaceModel { at2, at1 };
@@ -96,6 +96,37 @@ struct PhaseFieldSettings {
   bool operator==(const PhaseFieldSettings&) const = default;
 };
 
+// reference: the paper's letter, p = 100 E / h in double. fast: p = 10 M / h with compensated stiffness in float. screening: fast on a mesh
+// twice as coarse.
+enum class FdemTier { reference, fast, screening };
+enum class Softening { munjiza, linear };
+
+// What is absent follows the tier.
+struct FdemSettings {
+  double element_size = 0.003;  // m; 0.006 in the screening tier where it is not given
+  FdemTier tier = FdemTier::fast;
+  Softening softening = Softening::munjiza;
+  std::uint64_t mesh_seed = 1;
+  std::string mesh_file;    // a Gmsh .msh file in place of the mesher; empty: none
+  std::string mesh_sha256;  // of the file's bytes; a run with another file is refused
+  std::optional<Precision> precision;
+  std::optional<double> penalty;  // p h / E (reference) or p h / C11 (fast, screening); the tier's: 100, 10
+  double viscosity = 0.1;         // of 2 h sqrt(E rho)
+  double contact_penalty = 1.0;   // of E
+  double dt_fraction = 0.7;       // of the mesh's bound
+  std::optional<double> dt;       // s, instead of dt_fraction
+  bool operator==(const FdemSettings&) const = default;
+};
+
+// What a rehearsal job does instead of a simulation; see FARM.md.
+enum class DrillAct { sleep, crash, hang, leak, truncated, bit_flipped, wrong_job, nan, ignore_term };
+struct DrillSettings {
+  DrillAct act = DrillAct::sleep;
+  double seconds = 0.0;  // of work before the act
+  int attempts = 0;      // that act; later ones end well. 0: all of them
+  bool operator==(const DrillSettings&) const = default;
+};
+
 // Where a scene of a campaign came from; identification only, the cracks say what is solved.
 struct Sample {
   CrackSet set = CrackSet::orthogonal;
@@ -117,6 +148,8 @@ struct Scene {
   double frame_interval = 0.0;  // s
   Stop stop = Stop::failure;
   PhaseFieldSettings phase_field;
+  FdemSettings fdem;
+  DrillSettings drill;
   std::optional<Sample> sample;
 
   const std::vector<SideLoad>& on(Side side) const { return loads[static_cast<std::size_t>(side)]; }

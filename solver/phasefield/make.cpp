@@ -13,7 +13,7 @@ bool rows_can(const Scene& scene) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_phase_field(const Scene& scene, const Rules& rules) {
+std::unique_ptr<GridSimulation> make_phase_field(const Scene& scene, const Rules& rules) {
   if (!rows_can(scene)) return std::make_unique<phasefield::assembled::Assembled>(scene);
   using namespace phasefield;
   if (scene.phase_field.precision == Precision::float_) return std::make_unique<PhaseField<float>>(scene, chosen_kernels<float>(), rules);

@@ -7,7 +7,7 @@
 namespace fracfarm::phasefield {
 
 template <class Real>
-class PhaseField final : public Simulation {
+class PhaseField final : public GridSimulation {
  public:
   PhaseField(const Scene& scene, const Kernels<Real>& kernels, const Rules& rules = {});
 

@@ -24,7 +24,7 @@ struct Ended {
   double stress;
 };
 
-Ended after_steps(Simulation& run, double dt, int steps) {
+Ended after_steps(GridSimulation& run, double dt, int steps) {
   REQUIRE(run.start(dt));
   for (int n = 0; n < steps; ++n) REQUIRE(run.step(n, dt));
   Ended ended{run.sample(steps, dt), {}, run.mean_stress_zz()};

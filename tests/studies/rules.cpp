@@ -12,7 +12,7 @@
 namespace fracfarm::studies {
 namespace {
 
-using Made = std::unique_ptr<Simulation>;
+using Made = std::unique_ptr<GridSimulation>;
 
 struct Rule {
   std::string_view name;

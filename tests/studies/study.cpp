@@ -54,7 +54,7 @@ Ending ending_of(const Scene& scene) {
   return ending;
 }
 
-Ending ending_of(const Scene& scene, Simulation& simulation) {
+Ending ending_of(const Scene& scene, GridSimulation& simulation) {
   Ending ending;
   ending.dt = scene.phase_field.cfl * simulation.stable_dt();
   FailureWatch watch(watched_directions(scene));

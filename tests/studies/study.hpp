@@ -42,7 +42,7 @@ struct Ending {
 
 Ending ending_of(const Scene& scene);
 // The same of a simulation that was changed in a way that no scene can say; no ledger is watched.
-Ending ending_of(const Scene& scene, Simulation& simulation);
+Ending ending_of(const Scene& scene, GridSimulation& simulation);
 // The damage at the step nearest to `time` (s).
 std::vector<float> damage_at(Scene scene, double time);
 

@@ -31,7 +31,7 @@ class Specimen {
   double time() const { return static_cast<double>(step_) * dt_; }  // s
   double dt() const { return dt_; }
   long long steps() const { return step_; }
-  const Simulation& simulation() const { return *simulation_; }
+  const GridSimulation& simulation() const { return *simulation_; }
   const std::vector<double>& psi();  // now, nodes in rows from the bottom
   double psi_at(int column, int row) { return psi()[static_cast<std::size_t>(row * columns() + column)]; }
   int columns() const { return simulation_->columns(); }
@@ -43,7 +43,7 @@ class Specimen {
 
  private:
   Scene scene_;
-  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<GridSimulation> simulation_;
   double dt_;
   long long step_ = 0, read_step_ = -1;
   std::vector<double> psi_;

@@ -7,7 +7,7 @@
 
 namespace fracfarm::phasefield::assembled {
 
-class Assembled final : public Simulation {
+class Assembled final : public GridSimulation {
  public:
   // `prescription`: displacements that no scene can say, quasi-static only.
   explicit Assembled(const Scene& scene, Prescription prescription = {});
