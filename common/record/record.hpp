@@ -8,6 +8,7 @@
 #include "common/failure/failure.hpp"
 #include "common/failure/series.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/triangle_mesh.hpp"
 
 namespace fracfarm {
 
@@ -22,6 +23,19 @@ struct PhaseFieldFrames {
   std::vector<unsigned char> mask_initial;  // 1 on held nodes
 };
 
+// FDEM on the undeformed mesh, by edge of it: 0 intact ... 1 broken, exactly 2 on the edges of the initial cracks. Float as it is stored:
+// an edge that is not broken is given a value below 1, and stays below it.
+struct FdemFrames {
+  TriangleMesh mesh;
+  std::vector<double> time;                // s, one a frame, the first at 0
+  std::vector<std::vector<float>> damage;  // one value an edge, a frame
+  std::vector<float> damage_initial;
+  std::vector<float> damage_failure;      // at time_to_failure, or the last state where there is none
+  std::vector<double> break_time;         // s by edge, not a number where it never broke, initial cracks among them
+  std::vector<unsigned char> break_mode;  // by edge: 0 did not break, 1 in tension, 2 in shear, 3 in both
+};
+
+// The frames of its method, and empty ones of the others.
 struct Record {
   std::string key;  // of the job: SHA-256 of canonical scene and solver build
   std::string canonical_scene;
@@ -35,6 +49,7 @@ struct Record {
   double peak_stress = 0.0;     // Pa
   std::vector<Segment> cracks;  // as drawn
   PhaseFieldFrames phase_field;
+  FdemFrames fdem;
   Series series;
   double energy_residual = 0.0;  // worst |residual| over max external work
   std::map<std::string, std::string>
