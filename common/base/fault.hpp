@@ -24,6 +24,7 @@ enum class FaultAction {
   ready_at_once,  // back to READY, nothing counted
   another_node,   // RETRY_WAIT with backoff, another node where there is one
   half_step,      // RETRY_WAIT once with half the time step
+  more_memory,    // RETRY_WAIT, on a node with more memory for each slot where there is one
   done_censored,  // DONE(CENSORED): a valid result
   quarantine,     // QUARANTINED: a person must look
 };
@@ -32,7 +33,7 @@ struct FaultRow {
   Fault fault;
   std::string_view name;  // as it is printed and stored
   int job_budget;         // attempts that may end so before the job is QUARANTINED; 0: never counted against the job
-  bool blames_node;
+  bool node_suspected;    // the node may be to blame: it is, where other nodes do what fails on it
   FaultAction action;
   std::string_view meaning;  // one line for people
 };
@@ -44,9 +45,9 @@ inline constexpr std::array<FaultRow, 8> fault_table{{
      "heartbeat lost, bus error, disk full or a missing library on the node"},
     {Fault::output_bad, "OUTPUT_BAD", 3, true, FaultAction::another_node,
      "the record is truncated, reads back differently or breaks a rule"},
-    {Fault::solver_crash, "SOLVER_CRASH", 3, false, FaultAction::another_node, "the solver ended by a signal or a non-zero exit, or hung"},
+    {Fault::solver_crash, "SOLVER_CRASH", 3, true, FaultAction::another_node, "the solver ended by a signal or a non-zero exit, or hung"},
     {Fault::solver_numeric, "SOLVER_NUMERIC", 1, false, FaultAction::half_step, "not finite, energy ledger open or diverged"},
-    {Fault::out_of_memory, "OUT_OF_MEMORY", 2, false, FaultAction::another_node, "killed by the memory limit"},
+    {Fault::out_of_memory, "OUT_OF_MEMORY", 2, true, FaultAction::more_memory, "killed by the memory limit"},
     {Fault::budget, "BUDGET", 0, false, FaultAction::done_censored, "wall clock or step budget reached; the last checkpoint is kept"},
     {Fault::bad_request, "BAD_REQUEST", 0, false, FaultAction::quarantine, "the scene or campaign is not one that this build can solve"},
 }};
