@@ -100,8 +100,12 @@ JobSpec job_at(const Campaign& campaign, std::uint64_t index) {
 }
 
 Parsed<Scene> try_scene_of(const Campaign& campaign, const JobSpec& job) {
-  const SampleChoice choice{
-      .material = find_material(job.material), .load = find_load(job.load), .set = job.set, .seed = campaign.seed, .id = job.sample_id};
+  const SampleChoice choice{.material = find_material(job.material),
+                            .load = find_load(job.load),
+                            .set = job.set,
+                            .seed = campaign.seed,
+                            .id = job.sample_id,
+                            .method = job.method};
   return sample_scene_with(choice, {.redraw = campaign.blocks.at(job.block).redraw}, job.settings);
 }
 

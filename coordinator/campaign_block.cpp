@@ -168,7 +168,8 @@ JobBlock read_block(const json& value, const std::string& path, ProblemList& pro
   std::vector<std::string_view> materials, loads;
   for (const Material& row : material_table()) materials.push_back(row.name);
   for (const NamedLoad& row : named_loads) loads.push_back(row.name);
-  fields.only("method", name_of(Method::phase_field), {"fdem", "drill"});
+  static constexpr std::array<Word<Method>, 2> methods{{{"phase_field", Method::phase_field}, {"fdem", Method::fdem}}};
+  fields.word("method", methods, block.method, {"drill"});
   block.materials = read_words(fields, "materials", materials);
   block.loads = read_words(fields, "loads", loads);
   read_patterns(fields, block);

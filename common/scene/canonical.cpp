@@ -42,8 +42,8 @@ json scene_json(const Scene& scene) {
            {"cracks", cracks_json(scene)},
            {"loads", loads_json(scene)},
            {"initial", {{"strain", scene.initial.strain}, {"velocity_gradient", scene.initial.velocity_gradient}}},
-           {"time", {{"horizon", scene.horizon}, {"frame_interval", scene.frame_interval}, {"stop", spelled(stop_words, scene.stop)}}},
-           {"phase_field", phase_field_json(scene)}};
+           {"time", {{"horizon", scene.horizon}, {"frame_interval", scene.frame_interval}, {"stop", spelled(stop_words, scene.stop)}}}};
+  out[std::string(name_of(scene.method))] = scene.method == Method::fdem ? fdem_json(scene) : phase_field_json(scene);
   if (const auto& sample = scene.sample)
     out["sample"] = {{"set", name_of(sample->set)}, {"seed", sample->seed}, {"id", sample->id}, {"load", sample->load}};
   return out;

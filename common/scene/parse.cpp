@@ -20,9 +20,10 @@ using nlohmann::json;
 constexpr std::size_t max_cracks = 10'000;
 constexpr std::uint64_t max_nodes = 4'000'000;
 constexpr double max_frames = 10'000;
-constexpr double max_stored_values = 1e9;          // nodes times frames, 4 GB as float
-constexpr double default_frame_interval = 5.0e-6;  // s; the published dataset's own by its file sizes
-constexpr double max_aspect = 10.0;                // of a cell
+constexpr double max_stored_values = 1e9;                // nodes times frames, 4 GB as float
+constexpr double default_frame_interval = 5.0e-6;        // s; the published dataset's own by its file sizes
+constexpr double default_fdem_frame_interval = 10.0e-6;  // s
+constexpr double max_aspect = 10.0;                      // of a cell
 
 void read_domain(Fields& top, Scene& scene) {
   const json* value = top.value("domain");
@@ -87,18 +88,23 @@ void read_time(Fields& top, Scene& scene) {
 }
 
 void fill_times(Scene& scene) {
+  const bool fdem = scene.method == Method::fdem;
   if (scene.horizon == 0.0)
-    for (const Layer& layer : scene.layers) scene.horizon = std::max(scene.horizon, layer.material.default_horizon);
-  if (scene.frame_interval == 0.0) scene.frame_interval = default_frame_interval;
+    for (const Layer& layer : scene.layers)
+      scene.horizon = std::max(scene.horizon, fdem ? layer.material.fdem_horizon : layer.material.default_horizon);
+  if (scene.frame_interval == 0.0) scene.frame_interval = fdem ? default_fdem_frame_interval : default_frame_interval;
 }
 
-// Another method's block may stand beside the chosen one; its keys must be the format's, its values are not this scene's.
-void check_fdem_block(Fields& top) {
-  const json* value = top.value("fdem");
-  if (!value) return;
-  Fields fields(*value, "fdem", top.problems());
-  fields.allow({"element_size", "tier", "softening", "mesh_seed", "mesh_file"});
-  fields.done();
+// Another method's block may stand beside the chosen one: its keys and values must be right, but they are not this scene's.
+void read_methods(Fields& top, Scene& scene) {
+  Scene others;
+  read_phase_field(top, scene.method == Method::phase_field ? scene : others);
+  read_fdem(top, scene.method == Method::fdem ? scene : others);
+}
+
+// A domain, a material and a fitting length scale are needed by both methods; the characteristic width by one.
+bool width_needed(const Scene& scene) {
+  return scene.method == Method::phase_field && scene.phase_field.length_scale.kind != LengthScale::Kind::metres;
 }
 
 void read_sample(Fields& top, Scene& scene) {
@@ -118,6 +124,14 @@ void read_sample(Fields& top, Scene& scene) {
   scene.sample = sample;
 }
 
+void check_frames(const Scene& scene, double values, ProblemList& problems) {
+  const double frames = std::floor(scene.horizon / scene.frame_interval) + 1;
+  if (frames > max_frames || frames * values > max_stored_values)
+    problems.add("time.frame_interval", shortest(scene.frame_interval),
+                 fmt::format("at most {} frames, and at most {} stored values in all", shortest(max_frames), shortest(max_stored_values)),
+                 "a longer interval or a shorter horizon");
+}
+
 // The rest needs several keys, and is worth saying only of a scene whose keys are right.
 void check_grid(const Scene& scene, ProblemList& problems) {
   const PhaseFieldSettings& settings = scene.phase_field;
@@ -130,11 +144,20 @@ void check_grid(const Scene& scene, ProblemList& problems) {
     problems.add("phase_field.cells", fmt::format("cells of {} by {} m", shortest(hx), shortest(hz)),
                  fmt::format("cells at most {} times as long as wide", shortest(max_aspect)),
                  fmt::format("squares need [{}, {}]", settings.cells_x, std::max(1LL, std::llround(scene.height / hx))));
-  const double frames = std::floor(scene.horizon / scene.frame_interval) + 1;
-  if (frames > max_frames || frames * static_cast<double>(nodes) > max_stored_values)
-    problems.add("time.frame_interval", shortest(scene.frame_interval),
-                 fmt::format("at most {} frames, and at most {} node values in all", shortest(max_frames), shortest(max_stored_values)),
-                 "a longer interval or a shorter horizon");
+  check_frames(scene, static_cast<double>(nodes), problems);
+}
+
+void check_method(Scene& scene, ProblemList& problems) {
+  if (scene.stop == Stop::drop10 && scene.method != Method::fdem)
+    problems.add("time.stop", "drop10", "failure or horizon for method phase_field", "failure");
+  if (scene.method == Method::fdem) {
+    check_frames(scene, 1.5 * triangle_count(scene), problems);
+    return check_fdem(scene, problems);
+  }
+  scene.phase_field.plasticity = effective_plasticity(scene);
+  if (scene.phase_field.plasticity != PlasticityModel::j2) scene.phase_field.plastic_drive = 0.0;
+  check_grid(scene, problems);
+  check_phase_field(scene, problems);
 }
 
 }  // namespace
@@ -145,25 +168,20 @@ Parsed<Scene> scene_from_json(const json& file) {
   Fields top(file, "", problems);
   top.require({"method", "domain", "material"});
   top.only("schema", scene_schema);  // a file without it is of the first version
-  top.word("method", method_words, scene.method, {"fdem", "drill"});
+  top.word("method", method_words, scene.method, {"drill"});
   read_domain(top, scene);
-  read_phase_field(top, scene);
-  if (const json* material = top.value("material"))
-    scene.layers = read_layers(*material, scene.height, scene.phase_field.length_scale.kind != LengthScale::Kind::metres, problems);
+  read_methods(top, scene);
+  if (const json* material = top.value("material")) scene.layers = read_layers(*material, scene.height, width_needed(scene), problems);
   read_cracks(top, scene);
   read_loads(top, scene);
   read_initial(top, scene);
   read_time(top, scene);
-  check_fdem_block(top);
   read_sample(top, scene);
   top.done();
   if (!problems.empty()) return tl::unexpected(problems.take());
 
   fill_times(scene);
-  scene.phase_field.plasticity = effective_plasticity(scene);
-  if (scene.phase_field.plasticity != PlasticityModel::j2) scene.phase_field.plastic_drive = 0.0;
-  check_grid(scene, problems);
-  check_phase_field(scene, problems);
+  check_method(scene, problems);
   if (!problems.empty()) return tl::unexpected(problems.take());
   return scene;
 }

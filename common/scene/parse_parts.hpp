@@ -36,12 +36,21 @@ void read_phase_field(Fields& top, Scene& scene);
 void check_phase_field(const Scene& scene, ProblemList& problems);
 nlohmann::json phase_field_json(const Scene& scene);
 
+// The same of the fdem block; a key that follows the tier and was not given is left out.
+void read_fdem(Fields& top, Scene& scene);
+void check_fdem(const Scene& scene, ProblemList& problems);
+nlohmann::json fdem_json(const Scene& scene);
+double triangle_count(const Scene& scene);  // about
+
 // Spellings of files; name_of() prints by them too.
-inline constexpr std::array<Word<Method>, 1> method_words{{{"phase_field", Method::phase_field}}};
+inline constexpr std::array<Word<Method>, 2> method_words{{{"phase_field", Method::phase_field}, {"fdem", Method::fdem}}};
+inline constexpr std::array<Word<FdemTier>, 3> tier_words{
+    {{"reference", FdemTier::reference}, {"fast", FdemTier::fast}, {"screening", FdemTier::screening}}};
+inline constexpr std::array<Word<Softening>, 2> softening_words{{{"munjiza", Softening::munjiza}, {"linear", Softening::linear}}};
 inline constexpr std::array<Word<CrackSet>, 2> crack_set_words{{{"orthogonal", CrackSet::orthogonal}, {"oblique", CrackSet::oblique}}};
 inline constexpr std::array<Word<Side>, 4> side_words{
     {{"left", Side::left}, {"right", Side::right}, {"bottom", Side::bottom}, {"top", Side::top}}};
-inline constexpr std::array<Word<Stop>, 2> stop_words{{{"failure", Stop::failure}, {"horizon", Stop::horizon}}};
+inline constexpr std::array<Word<Stop>, 3> stop_words{{{"failure", Stop::failure}, {"drop10", Stop::drop10}, {"horizon", Stop::horizon}}};
 inline constexpr std::array<Word<StepControl>, 2> step_control_words{{{"fixed", StepControl::fixed}, {"adaptive", StepControl::adaptive}}};
 inline constexpr std::array<Word<CrackSeeding>, 3> seeding_words{
     {{"slot", CrackSeeding::slot}, {"nodes", CrackSeeding::nodes}, {"history", CrackSeeding::history}}};

@@ -52,6 +52,7 @@ struct SampleChoice {
   CrackSet set = CrackSet::orthogonal;
   std::uint64_t seed = 0;  // of the campaign
   std::uint64_t id = 1;
+  Method method = Method::phase_field;
 };
 
 // The scene of one sample: pattern, material, load and defaults; what `fracfarm scene` prints.

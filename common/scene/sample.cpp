@@ -14,7 +14,15 @@ using nlohmann::json;
 
 constexpr double pull = 1.0;  // m/s outward (seed paper, phase-field runs; its signs would compress)
 
+constexpr double plate_ramp = 1.0e-4;  // s, FDEM (seed paper: plates, "0 to 10^-4 s")
+
 bool moves(const NamedLoad& load, Side side) { return load.horizontal || side == Side::bottom || side == Side::top; }
+
+// FDEM's samples hang between rigid plates that they are tied to, so a pulled side keeps its length.
+json pulled_side(Method method) {
+  if (method == Method::fdem) return {{"normal_velocity", pull}, {"tangential", "fixed"}, {"ramp", plate_ramp}};
+  return {{"normal_velocity", pull}};
+}
 
 // What a person would write: everything else is a default of the grammar, so that a default which hangs on a setting follows it.
 json sample_json(const SampleChoice& choice, const PatternSettings& pattern) {
@@ -23,9 +31,9 @@ json sample_json(const SampleChoice& choice, const PatternSettings& pattern) {
     cracks.push_back({crack.x0, crack.z0, crack.x1, crack.z1});
   json loads = json::object();
   for (const auto& [name, side] : side_words)
-    loads[std::string(name)] = moves(*choice.load, side) ? json{{"normal_velocity", pull}} : json("free");
+    loads[std::string(name)] = moves(*choice.load, side) ? pulled_side(choice.method) : json("free");
   return {{"schema", scene_schema},
-          {"method", name_of(Method::phase_field)},
+          {"method", name_of(choice.method)},
           {"domain", {{"width", pattern.width}, {"height", pattern.height}}},
           {"material", material_json(*choice.material)},
           {"cracks", std::move(cracks)},

@@ -1,5 +1,5 @@
-// The mesh of an FDEM run as plain data: undeformed nodes, triangles, and the interior edges that joints stand on. Made by solver/fdem, kept
-// by records.
+// The mesh of an FDEM run as plain data: undeformed nodes, triangles, and the interior edges that joints stand on. Made by solver/fdem,
+// kept by records.
 #pragma once
 
 #include <array>

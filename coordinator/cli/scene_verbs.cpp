@@ -89,7 +89,7 @@ Setting setting_of(const std::string& text) {
 
 struct SceneChoice {
   PatternChoice pattern;
-  std::string material, load, check_file;
+  std::string material, load, check_file, method = "phase_field";
   std::vector<std::string> set;
   bool as_json = false;
 };
@@ -108,6 +108,7 @@ Problems check_names(const SceneChoice& choice) {
   for (const NamedLoad& row : named_loads) loads.push_back(row.name);
   expect("--material", choice.material, materials);
   expect("--load", choice.load, loads);
+  expect("--method", choice.method, {"phase_field", "fdem"});
   if (choice.pattern.id == 0) problems.push_back({"--id", "(missing)", "a sample id from 1", ""});
   for (const std::string& text : choice.set)
     if (text.find('=') == std::string::npos) problems.push_back({"--set", text, "key=value, as phase_field.cfl=0.8", ""});
@@ -122,7 +123,8 @@ int print_scene(const SceneChoice& choice) {
                             .load = find_load(choice.load),
                             .set = choice.pattern.set(),
                             .seed = choice.pattern.seed,
-                            .id = choice.pattern.id};
+                            .id = choice.pattern.id,
+                            .method = choice.method == "fdem" ? Method::fdem : Method::phase_field};
   const Parsed<Scene> scene = sample_scene_with(sample, choice.pattern.settings, settings);
   if (!scene) return report_problems(scene.error(), "scene", choice.as_json);
   fmt::print("{}", pretty_text(json::parse(canonical_text(*scene))));
@@ -144,9 +146,12 @@ int check_scene(const SceneChoice& choice) {
                                   {"scene", json::parse(canonical_text(*scene))}}));
     return exit_ok;
   }
-  fmt::print("{}: {} {}, {} layer{}, {} cracks, {} x {} cells, horizon {}\n", ink("valid", Ink::green, stdout), choice.check_file,
-             material_name(*scene), scene->layers.size(), scene->layers.size() == 1 ? "" : "s", scene->cracks.size(),
-             scene->phase_field.cells_x, scene->phase_field.cells_z, engineering(scene->horizon, "s"));
+  const std::string grid = scene->method == Method::fdem
+                               ? fmt::format("elements of {}", engineering(scene->fdem.element_size, "m"))
+                               : fmt::format("{} x {} cells", scene->phase_field.cells_x, scene->phase_field.cells_z);
+  fmt::print("{}: {} {} {}, {} layer{}, {} cracks, {}, horizon {}\n", ink("valid", Ink::green, stdout), choice.check_file,
+             name_of(scene->method), material_name(*scene), scene->layers.size(), scene->layers.size() == 1 ? "" : "s",
+             scene->cracks.size(), grid, engineering(scene->horizon, "s"));
   for (const std::string& warning : warnings) fmt::print("{} {}\n", ink("warning:", Ink::yellow, stdout), warning);
   return exit_ok;
 }
@@ -175,6 +180,7 @@ int run_scene(int argc, char** argv) {
   add_pattern_options(app, choice.pattern);
   app.add_option("--material", choice.material, "a name of the material table");
   app.add_option("--load", choice.load, "uniaxial or biaxial");
+  app.add_option("--method", choice.method, "phase_field or fdem");
   app.add_option("--set", choice.set, "a scene key and its value, as phase_field.cfl=0.8; may be given again")
       ->take_all()
       ->allow_extra_args(false);
