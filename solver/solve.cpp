@@ -9,6 +9,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/text.hpp"
 #include "common/failure/new_crack.hpp"
+#include "common/scene/parse.hpp"
 #include "solver/checkpoint.hpp"
 #include "solver/run_log.hpp"
 #include "solver/simulation.hpp"
@@ -19,17 +20,17 @@ namespace {
 constexpr double progress_interval_s = 0.5;
 constexpr double checkpoint_interval_s = 300.0;  // a killed run loses at most this much
 
-enum class End { none, through_crack, horizon, wall_clock, step_budget, stopped };
+enum class End { none, failure, horizon, wall_clock, step_budget, stopped };
 
 class Run {
  public:
-  Run(const Scene& scene, const RunControl& control)
+  Run(const Scene& scene, const RunControl& control, MadeSimulation made)
       : scene_(scene),
         control_(control),
-        simulation_(make_phase_field(scene, control.rules)),
-        dt_(control.step_scale * scene.phase_field.dt.value_or(scene.phase_field.cfl * simulation_->stable_dt())),
+        simulation_(std::move(made.simulation)),
+        dt_(control.step_scale * made.dt),
         last_step_(std::max(1LL, static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9)))),
-        log_(scene, dt_) {}
+        log_(scene, dt_, std::move(made.watch)) {}
 
   Result<RunResult> go() {
     if (auto begun = resume_or_start(); !begun) return tl::unexpected(begun.error());
@@ -47,14 +48,16 @@ class Run {
 
  private:
   Result<void> resume_or_start() {
-    if (resume()) return {};
+    const Result<bool> resumed = resume();
+    if (!resumed) return tl::unexpected(resumed.error());
+    if (*resumed) return {};
     if (auto started = simulation_->start(dt_); !started) return numeric_trouble(started.error());
-    psi_initial_ = simulation_->stored_damage();
+    damage_initial_ = simulation_->stored_damage();
     return log_.note(*simulation_, 0);
   }
 
   End why_end() {
-    if (scene_.stop == Stop::failure && log_.watch().through_crack()) return End::through_crack;
+    if (log_.watch().is_over(scene_.stop, static_cast<double>(n_) * dt_)) return End::failure;
     if (n_ >= last_step_) return End::horizon;
     if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return End::stopped;
     if (elapsed_s() >= control_.wall_budget_s) return End::wall_clock;
@@ -79,16 +82,13 @@ class Run {
 
   void fill(RunResult& result, std::string_view otherwise) {
     const Series& series = log_.series();
-    const auto through = log_.watch().through_crack();
-    result.times = {{"through_crack", through},
-                    {"stress_drop", drop_of_a_broken_body()},
-                    {"five_step", five_step(series["step_time"], series["total_stress"], series["kinetic_energy"])}};
-    result.judgement = judge(result.times, otherwise);
+    result.times = log_.watch().times(series);
+    result.judgement = judge(name_of(scene_.method), result.times, otherwise);
     result.peak_stress = log_.peak_stress();
-    result.x = simulation_->x(), result.z = simulation_->z();
-    result.mask_initial = simulation_->mask();
-    result.psi_initial = psi_initial_;
-    result.psi_failure = failure_field(result.judgement.rule);
+    result.layout = simulation_->layout();
+    result.damage_initial = damage_initial_;
+    result.damage_failure = log_.watch().damage_at(result.judgement.rule, series);
+    if (result.damage_failure.empty()) result.damage_failure = simulation_->stored_damage();
     result.frames = std::move(log_.frames());
     result.series = series;
     result.steps = n_, result.dt = dt_;
@@ -97,18 +97,6 @@ class Run {
     result.wall_s = wall_before_s_ + elapsed_s();
     result.stages = simulation_->stage_seconds();
     result.kernel = simulation_->kernel();
-  }
-
-  // A body that only rings loses its mean stress, too.
-  std::optional<double> drop_of_a_broken_body() const {
-    if (!has_new_crack(log_.watch().psi_dropped(), psi_initial_)) return std::nullopt;
-    return stress_drop(log_.series()["step_time"], log_.series()["stress_zz"]);
-  }
-
-  std::vector<float> failure_field(std::string_view rule) const {
-    if (rule == "through_crack") return log_.watch().psi_through();
-    if (rule == "stress_drop" && !log_.watch().psi_dropped().empty()) return log_.watch().psi_dropped();
-    return simulation_->stored_damage();
   }
 
   // Whose checkpoint it is: the job, the build and the step size; any of them changes the numbers.
@@ -121,19 +109,21 @@ class Run {
     archive.put(n_);
     archive.put(cpu_before_s_ + thread_cpu_s() - cpu_start_s_);
     archive.put(wall_before_s_ + elapsed_s());
-    archive.put_array(psi_initial_);
+    archive.put_array(damage_initial_);
     simulation_->save(archive);
     log_.save(archive);
     return write_checkpoint(control_.checkpoint, identity(), archive.bytes());
   }
 
   // False where there is nothing to resume from; the simulation and the log are then as new.
-  bool resume() {
+  Result<bool> resume() {
     if (control_.checkpoint.empty()) return false;
     const CheckpointRead read = read_checkpoint(control_.checkpoint, identity());
     if (read.payload && load(*read.payload)) return true;
     if (!read.note.empty() || read.payload)
       fmt::print(stderr, "note: {}\n", read.payload ? "checkpoint ignored: its contents do not fit the scene" : read.note);
+    if (read.payload)
+      if (auto again = begin_anew(); !again) return tl::unexpected(again.error());
     return false;
   }
 
@@ -142,15 +132,19 @@ class Run {
     n_ = archive.get<long long>();
     cpu_before_s_ = archive.get<double>();
     wall_before_s_ = archive.get<double>();
-    archive.get_array(psi_initial_);
-    if (n_ >= 0 && simulation_->load(archive, n_, dt_) && log_.load(archive, *simulation_) && archive.finished()) {
-      first_step_ = n_;
-      return true;
-    }
-    simulation_ = make_phase_field(scene_, control_.rules);
-    log_ = RunLog(scene_, dt_);
-    n_ = 0, cpu_before_s_ = wall_before_s_ = 0.0;
-    return false;
+    archive.get_array(damage_initial_);
+    first_step_ = n_;
+    return n_ >= 0 && simulation_->load(archive, n_, dt_) && log_.load(archive) && archive.finished();
+  }
+
+  // A checkpoint that does not fit may have filled half of what is here.
+  Result<void> begin_anew() {
+    Result<MadeSimulation> made = make_simulation(scene_, control_);
+    if (!made) return tl::unexpected(made.error());
+    simulation_ = std::move(made->simulation);
+    log_ = RunLog(scene_, dt_, std::move(made->watch));
+    n_ = first_step_ = 0, cpu_before_s_ = wall_before_s_ = 0.0;
+    return {};
   }
 
   Result<void> checkpoint_now_and_then() { return elapsed_s() - last_save_s_ < checkpoint_interval_s ? Result<void>{} : save(); }
@@ -172,37 +166,66 @@ class Run {
   SystemClock clock_;
   const double start_s_ = clock_.monotonic_s();
   const double cpu_start_s_ = thread_cpu_s();
-  std::unique_ptr<GridSimulation> simulation_;
+  std::unique_ptr<Simulation> simulation_;
   double dt_;
   long long last_step_;
   RunLog log_;
   long long n_ = 0;           // steps made
   long long first_step_ = 0;  // of this attempt
-  std::vector<float> psi_initial_;
+  std::vector<float> damage_initial_;
   double cpu_before_s_ = 0.0, wall_before_s_ = 0.0;  // of the attempts that this one resumed
   double last_progress_s_ = 0.0, last_save_s_ = 0.0;
 };
 
+RunResult rejected_run(const std::string& reason) {
+  RunResult result;
+  result.judgement.verdict = Verdict::rejected;
+  result.judgement.rule = reason;
+  return result;
+}
+
+Result<RunResult> run_once(const Scene& scene, const RunControl& control) {
+  Result<MadeSimulation> made = make_simulation(scene, control);
+  if (!made) return tl::unexpected(made.error());
+  if (!made->simulation) return rejected_run(made->rejected);
+  return Run(scene, control, std::move(*made)).go();
+}
+
+// What is tried next after SOLVER_NUMERIC, in words; nothing where the scene does not let it or all was tried.
+std::optional<std::string_view> try_otherwise(int trials, Scene& scene, RunControl& control) {
+  if (scene.method == Method::fdem) {
+    if (trials == 0) return control.step_scale *= 0.5, "half the step";
+    if (trials > 1 || scene.fdem.tier == FdemTier::reference) return std::nullopt;
+    scene.fdem.tier = FdemTier::reference;
+    scene.fdem.precision.reset(), scene.fdem.penalty.reset();
+    return "the reference tier";
+  }
+  if (scene.phase_field.step_control != StepControl::adaptive || trials == step_halvings) return std::nullopt;
+  control.step_scale *= 0.5;
+  return "half the step";
+}
+
 }  // namespace
 
 Result<RunResult> solve(const Scene& scene, const RunControl& control) {
-  const int halvings = scene.phase_field.step_control == StepControl::adaptive ? step_halvings : 0;
   SystemClock clock;
   const double start_s = clock.monotonic_s(), start_cpu_s = thread_cpu_s();
+  Scene trial_scene = scene;
   RunControl trial = control;
   std::vector<std::string> notes;
   for (;;) {
     const double before_s = clock.monotonic_s() - start_s, before_cpu_s = thread_cpu_s() - start_cpu_s;
     trial.wall_budget_s = control.wall_budget_s - before_s;
-    Result<RunResult> result = Run(scene, trial).go();
+    Result<RunResult> result = run_once(trial_scene, trial);
     if (result) {
       result->cpu_s += before_cpu_s, result->wall_s += before_s;
       result->notes = std::move(notes);
       return result;
     }
-    if (result.error().fault != Fault::solver_numeric || std::ssize(notes) == halvings) return result;
-    notes.push_back(fmt::format("begun again with half the step after: {}", result.error().message));
-    trial.step_scale *= 0.5;
+    if (result.error().fault != Fault::solver_numeric) return result;
+    const auto next = try_otherwise(static_cast<int>(notes.size()), trial_scene, trial);
+    if (!next) return result;
+    notes.push_back(fmt::format("begun again with {} after: {}", *next, result.error().message));
   }
 }
 

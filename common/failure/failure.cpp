@@ -15,8 +15,20 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> verdict_names{{
     {Verdict::diverged, "diverged"},
 }};
 
-// The criteria that may decide, the stronger first; the others only count in the confidence.
-constexpr std::array<std::string_view, 2> deciding{"through_crack", "stress_drop"};
+// The criteria that may decide, the first that was met; the others only count in the confidence.
+struct MethodRow {
+  std::string_view method;
+  std::array<std::string_view, 2> deciding;
+};
+constexpr std::array<MethodRow, 2> methods{{
+    {"phase_field", {"through_crack", "stress_drop"}},
+    {"fdem", {"five_step", "drop10"}},
+}};
+
+std::span<const std::string_view> deciding_of(std::string_view method) {
+  const auto row = std::find_if(methods.begin(), methods.end(), [&](const MethodRow& m) { return m.method == method; });
+  return row == methods.end() ? std::span<const std::string_view>{} : row->deciding;
+}
 
 const FailureTime* find_time(std::span<const FailureTime> times, std::string_view rule) {
   const auto found = std::find_if(times.begin(), times.end(), [&](const FailureTime& t) { return t.rule == rule && t.time; });
@@ -62,10 +74,10 @@ std::optional<double> stress_drop(std::span<const double> time, std::span<const 
   return time[static_cast<std::size_t>(low - stress.begin())];
 }
 
-Judgement judge(std::span<const FailureTime> times, std::string_view otherwise) {
+Judgement judge(std::string_view method, std::span<const FailureTime> times, std::string_view otherwise) {
   Judgement judgement;
   judgement.rule = otherwise;
-  for (std::string_view rule : deciding) {
+  for (std::string_view rule : deciding_of(method)) {
     const FailureTime* found = find_time(times, rule);
     if (!found) continue;
     judgement.verdict = Verdict::failed;
@@ -75,6 +87,20 @@ Judgement judge(std::span<const FailureTime> times, std::string_view otherwise) 
   }
   judgement.confidence = confidence_of(times, judgement.time_to_failure, judgement.rule);
   return judgement;
+}
+
+std::optional<double> disagreement(std::span<const FailureTime> times) {
+  std::vector<double> met;
+  for (const FailureTime& candidate : times)
+    if (candidate.time) met.push_back(*candidate.time);
+  if (met.size() < 2) return std::nullopt;
+  const auto [shortest, longest] = std::minmax_element(met.begin(), met.end());
+  return *longest - *shortest;
+}
+
+std::optional<double> of_broken_body(std::optional<double> time, std::span<const double> break_time) {
+  const bool broke = time && std::any_of(break_time.begin(), break_time.end(), [&](double edge) { return edge <= *time; });
+  return broke ? time : std::nullopt;
 }
 
 }  // namespace fracfarm

@@ -38,7 +38,7 @@ std::optional<double> five_step(std::span<const double> time, std::span<const do
 
 // One candidate time with the rule that gave it.
 struct FailureTime {
-  std::string rule;            // through_crack, stress_drop, five_step
+  std::string rule;            // through_crack, stress_drop, five_step, drop10
   std::optional<double> time;  // s
 };
 
@@ -49,9 +49,17 @@ struct Judgement {
   double confidence = 0.0;                // in [0, 1], see judge()
 };
 
-// Picks by SCENES.md: through crack, else stress drop, else censored with `otherwise` as the rule.
+// Picks by the method's own order of criteria (SCENES.md); where none of them was met, or the method has none, censored with `otherwise` as
+// the rule. Phase field: through crack, else stress drop. FDEM: five-step pick, else drop10. A criterion that is not of the order never
+// decides.
 // Confidence is the mean agreement of the other candidates with the choice: shorter over longer time where both are there, 0.5 where
 // only one of the two is, 1 where neither is; 0 where there is no other candidate. So 1 means that every criterion gives the same time.
-Judgement judge(std::span<const FailureTime> times, std::string_view otherwise);
+Judgement judge(std::string_view method, std::span<const FailureTime> times, std::string_view otherwise);
+
+// The longest of the candidate times less the shortest (s); nothing where fewer than two were met.
+std::optional<double> disagreement(std::span<const FailureTime> times);
+
+// A lost stress or a pick is a failure only of a body that broke by then. `break_time` by edge (s), not a number where it never broke.
+std::optional<double> of_broken_body(std::optional<double> time, std::span<const double> break_time);
 
 }  // namespace fracfarm

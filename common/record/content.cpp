@@ -262,7 +262,7 @@ double through_crack_differences(const Context& c) {
 
 double judgement_differences(const Context& c) {
   const Judgement& stored = c.record.judgement;
-  const Judgement again = judge(c.record.failure_times, stored.rule);
+  const Judgement again = judge(c.record.method, c.record.failure_times, stored.rule);
   return !(stored.verdict == again.verdict) + !(stored.time_to_failure == again.time_to_failure) + !(stored.rule == again.rule) +
          !(stored.confidence == again.confidence);
 }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "common/failure/failure.hpp"
@@ -67,6 +68,52 @@ TEST_CASE("there is no pick where a step finds nothing") {
   CHECK_FALSE(Run(90, {{0, 0}, {30, 6}, {89, 1}}, key_at_40).pick());  // no stress peak after the key peak
   CHECK_FALSE(Run(90, {{0, 0}, {50, 6}, {89, 1}}, key_at_40).pick());  // the stress never stops falling
   CHECK_FALSE(five_step({}, {}, {}));
+}
+
+TEST_CASE("of two kinetic energy peaks that fall equally fast the first is the key") {
+  // Falls of 3 a sample behind 20 and behind 50; stress peaks at 30 and 60, falling to 34 and 66.
+  const std::vector<std::pair<double, double>> stress{{0, 0}, {10, 9}, {16, 2}, {30, 6}, {34, 1}, {60, 5}, {66, 2}, {80, 3}};
+  Run run(90, stress, {{0, 0}, {20, 8}, {22, 2}, {50, 8}, {52, 2}, {89, 2}});
+  std::iota(run.time.begin(), run.time.end(), 0.0);  // so that equal falls are equal to the bit
+  CHECK(run.pick() == 34.0);
+  run.energy[22] = 1.9, run.energy[52] = 1.8;
+  CHECK(run.pick() == 66.0);
+}
+
+TEST_CASE("a stress peak at the very row of the key peak does not come after it") {
+  const Run run(90, {{0, 0}, {40, 9}, {46, 4}, {50, 6}, {58, 1}, {80, 3}}, key_at_40);
+  CHECK(run.pick() == run.time[58]);
+}
+
+TEST_CASE("flat tops of both signals count at their middle") {
+  // Energy flat over 38...42, key at 40; stress flat over 36...44 is at 40, not after it, the next one flat over 50...54 is.
+  const Run run(90, {{0, 0}, {36, 9}, {44, 9}, {47, 4}, {50, 6}, {54, 6}, {60, 1}, {80, 3}},
+                {{0, 0}, {20, 4}, {30, 2}, {38, 10}, {42, 10}, {46, 1}, {60, 3}, {80, 1}});
+  CHECK(run.pick() == run.time[60]);
+}
+
+TEST_CASE("a plateau on the way down ends the fall: the stress has stopped decreasing") {
+  const Run run(90, {{0, 0}, {35, 9}, {42, 4}, {50, 6}, {54, 4}, {56, 4}, {62, 1}, {80, 3}}, key_at_40);
+  CHECK(run.pick() == run.time[54]);
+}
+
+TEST_CASE("the stress peak after the key counts even while the stress is compressive") {
+  const Run run(90, {{0, 0}, {35, 9}, {42, -4}, {50, -1}, {58, -3}, {80, 0}}, key_at_40);
+  CHECK(run.pick() == run.time[58]);
+}
+
+TEST_CASE("noise that turns no slope around at the pick does not move it") {
+  const Run clean(400, {{0, 0}, {150, 9}, {190, 4}, {230, 6}, {270, 1}, {285, 4}, {399, 5}},
+                  {{0, 0}, {80, 4}, {120, 2}, {180, 10}, {196, 1}, {260, 3}, {399, 1}});
+  REQUIRE(clean.pick() == clean.time[270]);
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> noise(-0.04, 0.04);  // less than half of any slope at the pick
+  for (int trial = 0; trial < 50; ++trial) {
+    Run run = clean;
+    for (double& stress : run.stress) stress += noise(engine);
+    for (double& energy : run.energy) energy += noise(engine);
+    CHECK(run.pick() == clean.time[270]);
+  }
 }
 
 TEST_CASE("units and sampling do not move the pick") {

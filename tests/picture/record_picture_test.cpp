@@ -35,7 +35,7 @@ TEST_CASE("the same record gives the same picture, another another") {
 TEST_CASE("records of one frame, without failure, of two nodes or of a thin strip are drawn") {
   Record censored = sample::record();
   for (FailureTime& time : censored.failure_times) time.time.reset();
-  censored.judgement = judge(censored.failure_times, "horizon");
+  censored.judgement = judge(censored.method, censored.failure_times, "horizon");
   censored.phase_field.psi.resize(1), censored.phase_field.time.resize(1);
   CHECK(draw_record(censored).height() > 400);
   CHECK(draw_record(sample::record({1, 1, 2, 3})).height() > 400);

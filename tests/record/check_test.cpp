@@ -158,7 +158,7 @@ TEST_CASE("fields that contradict the through crack are named") {
         }) == Names{"through_crack"});
   CHECK(broken_by([](Record& r) {  // through, but no time
           r.failure_times[0].time.reset();
-          r.judgement = judge(r.failure_times, "horizon");
+          r.judgement = judge(r.method, r.failure_times, "horizon");
         })
             .contains("through_crack"));
 }

@@ -89,7 +89,7 @@ inline Record record(const Size& size = {}) {
   r.failure_times = {{"through_crack", r.phase_field.time.back()},
                      {"stress_drop", stress_drop(times, stress)},
                      {"five_step", five_step(times, r.series["total_stress"], r.series["kinetic_energy"])}};
-  r.judgement = judge(r.failure_times, "horizon");
+  r.judgement = judge(r.method, r.failure_times, "horizon");
   r.peak_stress = *std::max_element(stress.begin(), stress.end());
   const auto residual = r.series["energy_residual"], work = r.series["external_work"];
   r.energy_residual = *std::max_element(residual.begin(), residual.end()) / *std::max_element(work.begin(), work.end());
