@@ -1,4 +1,5 @@
-// The mesher's door: cracks in, an isotropic conforming triangulation out, or the reason why there is none. Knows nothing of time or stress.
+// The mesher's door: cracks in, an isotropic conforming triangulation out, or the reason why there is none. Knows nothing of time or
+// stress.
 #pragma once
 
 #include <cstdint>

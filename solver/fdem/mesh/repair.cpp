@@ -1,0 +1,201 @@
+#include "solver/fdem/mesh/repair.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+#include "common/base/text.hpp"
+#include "common/scene/pattern.hpp"
+#include "solver/fdem/mesh/geometry.hpp"
+
+namespace fracfarm::fdem {
+namespace {
+
+constexpr double most_elements = 2e6;  // elements of the size that fit in the body
+constexpr int most_rounds = 5;         // of repair; what is left then is the crack graph's
+
+std::string mm(double metres) { return fmt::format("{:.4g} mm", 1e3 * metres); }
+
+std::string refused_layer(const MeshChoice& choice, double tolerance) {
+  for (std::size_t i = 0; i < choice.layers.size(); ++i) {
+    const double z = choice.layers[i];
+    double gap = std::min(z, choice.height - z);
+    for (std::size_t j = 0; j < i; ++j) gap = std::min(gap, std::fabs(z - choice.layers[j]));
+    if (!(gap >= tolerance))
+      return fmt::format("the layer boundary at {} m lies {} from a side or from another one; at least half an element, {}", shortest(z),
+                         mm(gap), mm(tolerance));
+  }
+  return {};
+}
+
+std::string refused_crack(const MeshChoice& choice, double tolerance) {
+  double total = 0.0;
+  for (std::size_t i = 0; i < choice.cracks.size(); ++i) {
+    Segment crack = choice.cracks[i];
+    if (!std::isfinite(crack.x0) || !std::isfinite(crack.z0) || !std::isfinite(crack.x1) || !std::isfinite(crack.z1))
+      return fmt::format("crack {} has an end that is not finite", i);
+    if (length(crack) < tolerance)
+      return fmt::format("crack {} is {} long; at least half an element, {}", i, mm(length(crack)), mm(tolerance));
+    if (clip(crack, choice.width, choice.height)) total += length(crack) + choice.element_size;
+  }
+  const double most = 2 * choice.width * choice.height / choice.element_size + 4 * choice.element_size;
+  if (total > most)
+    return fmt::format("the cracks have {:.4g} m together; at most {:.4g} m with elements of {}", total, most, mm(choice.element_size));
+  return {};
+}
+
+// One round's work on the cracks; every step says whether it changed anything.
+class Repairer {
+ public:
+  Repairer(const MeshChoice& choice, double tolerance) : choice_(choice), tolerance_(tolerance), already_(1e-6 * tolerance) {
+    for (Segment crack : choice.cracks)
+      if (clip(crack, choice.width, choice.height)) out_.cracks.push_back(crack);
+    const double w = choice.width, h = choice.height;
+    fixed_ = {{0, 0, w, 0}, {0, h, w, h}, {0, 0, 0, h}, {w, 0, w, h}};
+    for (const double z : choice.layers) fixed_.push_back({0, z, w, z});
+  }
+
+  RepairedCracks run() {
+    bool changed = true;
+    for (int round = 0; round < most_rounds && changed; ++round) {
+      changed = leave_sides();
+      changed = join_parallel() || changed;
+      changed = mend_ends() || changed;
+      drop_short();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  std::vector<Segment>& cracks() { return out_.cracks; }
+
+  // A crack along a side separates nothing: it goes. One along a layer is moved onto it.
+  bool leave_sides() {
+    bool changed = false;
+    for (std::size_t i = 0; i < cracks().size();) {
+      const int line = fixed_along(cracks()[i]);
+      if (line >= 0 && line < 4) {
+        cracks().erase(cracks().begin() + static_cast<std::ptrdiff_t>(i));
+        ++out_.moved;
+        changed = true;
+        continue;
+      }
+      if (line >= 4) changed = put_at_height(cracks()[i], fixed_[static_cast<std::size_t>(line)].z0) || changed;
+      ++i;
+    }
+    return changed;
+  }
+
+  int fixed_along(const Segment& crack) const {
+    for (std::size_t k = 0; k < fixed_.size(); ++k)
+      if (distance_to(fdem::first(crack), fdem::first(fixed_[k]), last(fixed_[k])) < tolerance_ &&
+          distance_to(last(crack), fdem::first(fixed_[k]), last(fixed_[k])) < tolerance_)
+        return static_cast<int>(k);
+    return -1;
+  }
+
+  bool put_at_height(Segment& crack, double z) {
+    if (crack.z0 == z && crack.z1 == z) return false;
+    crack.z0 = crack.z1 = z;
+    ++out_.moved;
+    return true;
+  }
+
+  bool join_parallel() {
+    bool changed = false;
+    for (std::size_t i = 0; i < cracks().size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const bool onto_older = lies_along(cracks()[i], cracks()[j]);
+        if (!onto_older && !lies_along(cracks()[j], cracks()[i])) continue;
+        cracks()[j] = onto_older ? united(cracks()[j], cracks()[i]) : united(cracks()[i], cracks()[j]);
+        cracks().erase(cracks().begin() + static_cast<std::ptrdiff_t>(i));
+        ++out_.moved;
+        changed = true;
+        --i;
+        j = 0;
+        break;
+      }
+    return changed;
+  }
+
+  // Both ends of `it` within tolerance of the line of `of`, and their lengths overlap or touch.
+  bool lies_along(const Segment& it, const Segment& of) const {
+    const Vec a = fdem::first(of), b = last(of), p = fdem::first(it), q = last(it);
+    const double sp = foot_share(p, a, b), sq = foot_share(q, a, b);
+    if (distance(p, along(a, b, sp)) >= tolerance_ || distance(q, along(a, b, sq)) >= tolerance_) return false;
+    return std::max(sp, sq) > 0 && std::min(sp, sq) < 1;
+  }
+
+  // Along the line of `line`, from the first to the last end of the two.
+  static Segment united(const Segment& line, const Segment& other) {
+    const Vec a = fdem::first(line), b = last(line);
+    const double s = foot_share(fdem::first(other), a, b), t = foot_share(last(other), a, b);
+    const double low = std::min({0.0, s, t}), high = std::max({1.0, s, t});
+    const Vec p = low < 0 ? along(a, b, low) : a, q = high > 1 ? along(a, b, high) : b;
+    return {p.x, p.z, q.x, q.z};
+  }
+
+  bool mend_ends() {
+    bool changed = false;
+    for (std::size_t i = 0; i < cracks().size(); ++i)
+      for (const bool at_last : {false, true}) {
+        for (std::size_t k = 0; k < fixed_.size(); ++k) changed = mend_end(i, at_last, fixed_[k], false) || changed;
+        for (std::size_t j = 0; j < cracks().size(); ++j)
+          if (j != i) changed = mend_end(i, at_last, cracks()[j], true) || changed;
+      }
+    return changed;
+  }
+
+  // The end of crack i goes to where its line meets `other`; where that is far or nowhere, to the nearest point of `other`.
+  bool mend_end(std::size_t i, bool at_last, const Segment& other, bool is_crack) {
+    Segment& crack = cracks()[i];
+    const Vec from = at_last ? fdem::first(crack) : last(crack), end = at_last ? last(crack) : fdem::first(crack);
+    const Vec c = fdem::first(other), d = last(other);
+    if (end.x < std::min(c.x, d.x) - tolerance_ || end.x > std::max(c.x, d.x) + tolerance_ || end.z < std::min(c.z, d.z) - tolerance_ ||
+        end.z > std::max(c.z, d.z) + tolerance_)
+      return false;
+    const double gap = distance_to(end, c, d);
+    if (gap >= tolerance_ || gap <= already_ || distance(from, end) <= already_) return false;
+    Vec target = nearest_on(end, c, d);
+    if (const auto meet = meeting(from, end, c, d)) {
+      const Vec there = along(from, end, meet->first);
+      const double beyond = std::max({0.0, -meet->second, meet->second - 1}) * distance(c, d);
+      if (meet->first > 0 && distance(there, end) < 2 * tolerance_ && (beyond == 0 || (is_crack && beyond < tolerance_))) target = there;
+    }
+    target.x = std::clamp(target.x, 0.0, choice_.width);
+    target.z = std::clamp(target.z, 0.0, choice_.height);
+    if (distance(target, end) <= already_) return false;
+    ++(distance(from, target) < distance(from, end) ? out_.trimmed : out_.extended);
+    (at_last ? crack.x1 : crack.x0) = target.x;
+    (at_last ? crack.z1 : crack.z0) = target.z;
+    return true;
+  }
+
+  // What was trimmed away altogether.
+  void drop_short() {
+    std::erase_if(cracks(), [&](const Segment& crack) { return length(crack) < tolerance_; });
+  }
+
+  const MeshChoice& choice_;
+  double tolerance_, already_;
+  std::vector<Segment> fixed_;  // four sides, then layers
+  RepairedCracks out_;
+};
+
+}  // namespace
+
+std::string refusal(const MeshChoice& choice) {
+  const double h = choice.element_size, tolerance = 0.5 * h;
+  if (!(h > 0) || !std::isfinite(h) || !std::isfinite(choice.width) || !std::isfinite(choice.height))
+    return "element size, width and height must be finite, and the element size above 0";
+  if (!(std::min(choice.width, choice.height) >= 2 * h))
+    return fmt::format("the body is {} x {}; at least two elements of {} each way", mm(choice.width), mm(choice.height), mm(h));
+  if (choice.width * choice.height > most_elements * h * h)
+    return fmt::format("elements of {} would be {:.3g}; at most {:.3g} fit", mm(h), choice.width * choice.height / (h * h), most_elements);
+  std::string sentence = refused_layer(choice, tolerance);
+  return sentence.empty() ? refused_crack(choice, tolerance) : sentence;
+}
+
+RepairedCracks repair(const MeshChoice& choice) { return Repairer(choice, 0.5 * choice.element_size).run(); }
+
+}  // namespace fracfarm::fdem
