@@ -16,19 +16,26 @@ std::uint64_t first_frame_after(long long n, double interval, double dt) {
   return static_cast<std::uint64_t>(std::min(std::ceil((static_cast<double>(n) + 0.5) * dt / interval), 1e18));
 }
 
+long long steps_per_row(const Scene& scene, double dt) {
+  if (scene.method == Method::fdem) return std::max(1LL, std::llround(mesh_row_interval / dt));
+  return scene.phase_field.integrator == Integrator::explicit_central ? explicit_steps_per_row : 1;
+}
+
 }  // namespace
 
-RunLog::RunLog(const Scene& scene, double dt)
+RunLog::RunLog(const Scene& scene, double dt, std::unique_ptr<Watch> watch)
     : dt_(dt),
       frame_interval_(scene.frame_interval),
-      steps_per_row_(scene.phase_field.integrator == Integrator::explicit_central ? explicit_steps_per_row : 1),
-      keeps_ledger_(scene.phase_field.integrator != Integrator::quasi_static),
-      watch_(watched_directions(scene)) {}
+      steps_per_row_(steps_per_row(scene, dt)),
+      on_a_mesh_(scene.method == Method::fdem),
+      keeps_ledger_(scene.method == Method::fdem || scene.phase_field.integrator != Integrator::quasi_static),
+      watch_(std::move(watch)),
+      series_(empty_series(scene.method)) {}
 
-Result<void> RunLog::note(const GridSimulation& simulation, long long n) {
+Result<void> RunLog::note(const Simulation& simulation, long long n) {
   const double time = static_cast<double>(n) * dt_;
-  peak_stress_ = std::max(peak_stress_, simulation.mean_stress_zz());
-  if (n > 0) watch_.after_step(simulation, time);
+  if (!on_a_mesh_) peak_stress_ = std::max(peak_stress_, simulation.mean_stress_zz());
+  if (n > 0) watch_->after_step(time);
   if (row_is_due(simulation, n))
     if (auto healthy = add_row(simulation, n); !healthy) return healthy;
   if (frame_interval_ > 0.0 && step_of_frame(next_frame_, frame_interval_, dt_) <= n) {
@@ -38,11 +45,11 @@ Result<void> RunLog::note(const GridSimulation& simulation, long long n) {
   return {};
 }
 
-bool RunLog::row_is_due(const GridSimulation& simulation, long long n) const {
-  return n % steps_per_row_ == 0 || watch_.drops_at(simulation.mean_stress_zz());
+bool RunLog::row_is_due(const Simulation& simulation, long long n) const {
+  return n % steps_per_row_ == 0 || (!on_a_mesh_ && watch_->wants_row(simulation.mean_stress_zz()));
 }
 
-Result<void> RunLog::add_row(const GridSimulation& simulation, long long n) {
+Result<void> RunLog::add_row(const Simulation& simulation, long long n) {
   SampleRow sample = simulation.sample(n, dt_);
   const long long sweeps = sample.solver_iterations;
   sample.solver_iterations -= last_.solver_iterations;
@@ -52,17 +59,28 @@ Result<void> RunLog::add_row(const GridSimulation& simulation, long long n) {
   largest_work_ = std::max(largest_work_, std::abs(sample.external_work));
   largest_energy_ = std::max({largest_energy_, std::abs(sample.external_work), sample.kinetic_energy + sample.elastic_energy});
   largest_residual_ = std::max(largest_residual_, std::abs(sample.energy_residual));
-  watch_.at_row(simulation, sample.stress_zz);
+  peak_stress_ = std::max(peak_stress_, sample.stress_zz);
+  watch_->at_row(series_);
   return check_health(n);
 }
 
+// An FDEM run past its step's edge sheds the energy into broken joints, so that its ledger may close: what is free can still not be more
+// than what was brought.
+bool holds_more_than_brought(const SampleRow& s) { return s.kinetic_energy + s.elastic_energy > 1.05 * s.external_work + 1e-6; }
+
 Result<void> RunLog::check_health(long long n) const {
   const SampleRow& s = last_;
-  const double total = s.kinetic_energy + s.elastic_energy + s.released_energy + s.surface_energy + s.external_work;
+  const double total = s.kinetic_energy + s.elastic_energy + s.released_energy + s.surface_energy + s.fracture_energy + s.viscous_energy +
+                       s.contact_energy + s.friction_energy + s.external_work;
   if (!std::isfinite(total))
     return fail(Fault::solver_numeric,
                 fmt::format("not finite at step {}, {:.6g} s: kinetic {:.4g}, elastic {:.4g}, released {:.4g}, external work {:.4g} J/m", n,
                             s.step_time, s.kinetic_energy, s.elastic_energy, s.released_energy, s.external_work));
+  if (on_a_mesh_ && holds_more_than_brought(s))
+    return fail(Fault::solver_numeric,
+                fmt::format("more energy than was brought at step {}, {:.6g} s: kinetic {:.4g}, elastic {:.4g}, external work {:.4g} J/m; "
+                            "dt {:.6g} s",
+                            n, s.step_time, s.kinetic_energy, s.elastic_energy, s.external_work, dt_));
   if (keeps_ledger_ && std::abs(s.energy_residual) * ledger_weight(static_cast<double>(n)) > energy_residual_limit * largest_energy_)
     return fail(
         Fault::solver_numeric,
@@ -71,7 +89,7 @@ Result<void> RunLog::check_health(long long n) const {
   return {};
 }
 
-Result<void> RunLog::close(const GridSimulation& simulation, long long n) {
+Result<void> RunLog::close(const Simulation& simulation, long long n) {
   const bool stored = series_["step_time"].back() == static_cast<double>(n) * dt_;
   return stored ? Result<void>{} : add_row(simulation, n);
 }
@@ -79,21 +97,19 @@ Result<void> RunLog::close(const GridSimulation& simulation, long long n) {
 double RunLog::worst_residual() const { return largest_work_ > 0.0 ? largest_residual_ / largest_work_ : 0.0; }
 
 void RunLog::save(ArchiveWriter& archive) const {
-  watch_.save(archive);
   for (const Column& column : series_.columns) archive.put_array(column.values);
   archive.put(static_cast<std::uint64_t>(frames_.size()));
   for (const Frame& frame : frames_) {
     archive.put(frame.time);
-    archive.put_array(frame.psi);
+    archive.put_array(frame.damage);
   }
+  watch_->save(archive);
   archive.put(next_frame_);
   archive.put(last_);
   for (const double value : {peak_stress_, largest_work_, largest_energy_, largest_residual_}) archive.put(value);
 }
 
-bool RunLog::load(ArchiveReader& archive, const GridSimulation& simulation) {
-  const std::size_t nodes = static_cast<std::size_t>(simulation.columns()) * static_cast<std::size_t>(simulation.rows());
-  watch_.load(archive);
+bool RunLog::load(ArchiveReader& archive) {
   for (Column& column : series_.columns) {
     archive.get_array(column.values);
     if (column.values.size() != series_.rows()) archive.reject();
@@ -101,10 +117,11 @@ bool RunLog::load(ArchiveReader& archive, const GridSimulation& simulation) {
   const std::uint64_t count = archive.get<std::uint64_t>();
   for (std::uint64_t k = 0; k < count && !archive.failed(); ++k) {
     Frame frame{archive.get<double>(), {}};
-    archive.get_array(frame.psi);
-    if (frame.psi.size() != nodes) archive.reject();
+    archive.get_array(frame.damage);
+    if (!frames_.empty() && frame.damage.size() != frames_.front().damage.size()) archive.reject();
     frames_.push_back(std::move(frame));
   }
+  watch_->load(archive, series_);
   next_frame_ = archive.get<std::uint64_t>();
   last_ = archive.get<SampleRow>();
   for (double* value : {&peak_stress_, &largest_work_, &largest_energy_, &largest_residual_}) *value = archive.get<double>();

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/failure/series.hpp"
+#include "common/scene/scene.hpp"
 
 namespace fracfarm {
 
@@ -36,12 +37,11 @@ double energy_residual(const SampleRow& now, double initial_energy);
 
 struct SeriesColumn {
   std::string_view name;  // of common/failure's series_table, which gives the unit
+  unsigned kinds;         // of simulations that have it: grids, meshes
   double (*of)(const SampleRow&);
 };
 
-std::span<const SeriesColumn> series_columns();
-
-Series empty_series();
+Series empty_series(Method method);
 void append(Series& series, const SampleRow& sample);
 
 }  // namespace fracfarm

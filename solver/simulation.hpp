@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "common/base/result.hpp"
@@ -15,6 +16,19 @@
 #include "solver/sample.hpp"
 
 namespace fracfarm {
+
+struct GridLayout {
+  std::vector<double> x, z;         // node coordinates, m
+  std::vector<unsigned char> mask;  // 1 on nodes of the initial cracks
+};
+
+struct MeshLayout {
+  TriangleMesh mesh;
+  std::vector<double> break_time;         // s by edge, not a number where it never broke
+  std::vector<unsigned char> break_mode;  // BreakMode by edge
+};
+
+using Layout = std::variant<GridLayout, MeshLayout>;  // where the values of stored_damage() stand
 
 class Simulation {
  public:
@@ -29,6 +43,7 @@ class Simulation {
   virtual double mean_stress_zz() const = 0;  // Pa, after each step
   virtual SampleRow sample(long long n, double dt) const = 0;
   virtual std::vector<float> stored_damage() const = 0;  // as a record keeps it: by node of a grid, by edge of a mesh
+  virtual Layout layout() const = 0;
 
   // Exactly what a restart needs. After load, steps give the same bits as if the run had never stopped.
   virtual void save(ArchiveWriter& archive) const = 0;
@@ -50,6 +65,7 @@ class GridSimulation : public Simulation {
   // 1 where damage is above the threshold, else 0.
   virtual void mark_cracked(double threshold, std::vector<unsigned char>& cracked) const = 0;
   virtual bool crack_reaches(Side side, double threshold) const = 0;
+  Layout layout() const final { return GridLayout{x(), z(), mask()}; }
 };
 
 enum class BreakMode : unsigned char { none = 0, tension = 1, shear = 2, mixed = 3 };
@@ -60,6 +76,7 @@ class MeshSimulation : public Simulation {
   virtual const TriangleMesh& mesh() const = 0;
   virtual std::vector<double> break_time() const = 0;         // s by edge, not a number where it never broke
   virtual std::vector<unsigned char> break_mode() const = 0;  // BreakMode by edge
+  Layout layout() const final { return MeshLayout{mesh(), break_time(), break_mode()}; }
 };
 
 std::unique_ptr<GridSimulation> make_phase_field(const Scene& scene, const Rules& rules = {});

@@ -8,11 +8,10 @@
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/text.hpp"
-#include "common/failure/new_crack.hpp"
 #include "common/scene/parse.hpp"
 #include "solver/checkpoint.hpp"
+#include "solver/make_simulation.hpp"
 #include "solver/run_log.hpp"
-#include "solver/simulation.hpp"
 
 namespace fracfarm {
 namespace {

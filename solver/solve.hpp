@@ -14,6 +14,7 @@
 #include "common/failure/series.hpp"
 #include "common/scene/scene.hpp"
 #include "solver/rules.hpp"
+#include "solver/simulation.hpp"
 
 namespace fracfarm {
 
@@ -26,22 +27,22 @@ struct RunControl {
   const std::atomic<bool>* stop = nullptr;                                    // set by SIGTERM: save and end
   std::function<void(long long step, double time, double horizon)> progress;  // called about twice a second
   Rules rules;                                                                // all on but in a study
+  int threads = 1;                                                            // of an FDEM run; never changes a result
   double step_scale = 1.0;                                                    // changes the result: 0.5 after SOLVER_NUMERIC
 };
 
 struct Frame {
-  double time = 0.0;       // s
-  std::vector<float> psi;  // by node
+  double time = 0.0;          // s
+  std::vector<float> damage;  // by node of a grid, by edge of a mesh
 };
 
+// A rejected run has a judgement with the reason as its rule, and nothing else.
 struct RunResult {
   bool stopped = false;  // by RunControl::stop; a checkpoint was saved and nothing below counts
   Judgement judgement;
   std::vector<FailureTime> times;
   double peak_stress = 0.0;  // Pa, largest mean vertical stress over time
-  std::vector<double> x, z;  // node coordinates, m
-  std::vector<unsigned char> mask_initial;
-  std::vector<float> psi_initial, psi_failure;
+  std::vector<float> damage_initial, damage_failure;
   std::vector<Frame> frames;
   Series series;
   long long steps = 0;
@@ -50,10 +51,12 @@ struct RunResult {
   double cpu_s = 0.0, wall_s = 0.0;
   std::map<std::string, double> stages;  // seconds by stage
   std::string kernel;                    // ISA path and precision
+  Layout layout;                         // where the values of the damage fields stand
   std::vector<std::string> notes;        // what happened on the way: trials of an adaptive run that ended SOLVER_NUMERIC
 };
 
-// A scene with phase_field.step "adaptive" is begun again with half the step where it ends SOLVER_NUMERIC, at most step_halvings times.
+// A run that ends SOLVER_NUMERIC is begun again where its scene lets it: phase_field.step "adaptive" with half the step, at most
+// step_halvings times; FDEM once with half the step, then in the reference tier. RunResult::notes says so.
 inline constexpr int step_halvings = 4;
 
 // Errors: SOLVER_NUMERIC with evidence (step, time, what was not finite or did not close), NODE_LOST where the checkpoint cannot be

@@ -15,6 +15,27 @@ std::string boundary_condition(const Scene& scene) {
   return "scene";
 }
 
+void fill_frames(Record& record, GridLayout& grid, RunResult& result) {
+  PhaseFieldFrames& frames = record.phase_field;
+  frames = {std::move(grid.x),   std::move(grid.z), {}, {}, std::move(result.damage_initial), std::move(result.damage_failure),
+            std::move(grid.mask)};
+  for (Frame& frame : result.frames) {
+    frames.time.push_back(frame.time);
+    frames.psi.push_back(std::move(frame.damage));
+  }
+}
+
+void fill_frames(Record& record, MeshLayout& layout, RunResult& result) {
+  FdemFrames& frames = record.fdem;
+  frames = {
+      std::move(layout.mesh),      {}, {}, std::move(result.damage_initial), std::move(result.damage_failure), std::move(layout.break_time),
+      std::move(layout.break_mode)};
+  for (Frame& frame : result.frames) {
+    frames.time.push_back(frame.time);
+    frames.damage.push_back(std::move(frame.damage));
+  }
+}
+
 }  // namespace
 
 Record record_of(const Task& task, const Scene& scene, RunResult result) {
@@ -29,12 +50,7 @@ Record record_of(const Task& task, const Scene& scene, RunResult result) {
   record.failure_times = result.times;
   record.peak_stress = result.peak_stress;
   record.cracks = scene.cracks;
-  record.phase_field = {std::move(result.x),           std::move(result.z),           {}, {}, std::move(result.psi_initial),
-                        std::move(result.psi_failure), std::move(result.mask_initial)};
-  for (Frame& frame : result.frames) {
-    record.phase_field.time.push_back(frame.time);
-    record.phase_field.psi.push_back(std::move(frame.psi));
-  }
+  std::visit([&](auto& layout) { fill_frames(record, layout, result); }, result.layout);
   record.series = std::move(result.series);
   record.energy_residual = result.energy_residual;
   record.provenance = provenance_of(scene, result, {task.attempt, task.step_scale});

@@ -22,6 +22,7 @@ Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, Keeping ke
   if (!result) return tl::unexpected(result.error());
   if (result->stopped) return TaskEnd{true, {}};
   TaskEnd end{false, summary_of(*result)};
+  if (result->judgement.verdict == Verdict::rejected) return end;  // nothing ran: there is no record
   const Result<std::string> digest = write_record(record_of(task, scene, std::move(*result)), task.output, keeping);
   if (!digest) return tl::unexpected(digest.error());
   end.summary.record_sha256 = *digest;
@@ -35,7 +36,9 @@ Result<TaskEnd> run_task(const Task& task, const Scene& scene, Keeping keeping, 
     return solve_and_write(task, scene, keeping, progress);
   } catch (const std::bad_alloc&) {
     return fail(Fault::out_of_memory,
-                fmt::format("no memory for a grid of {} x {} cells", scene.phase_field.cells_x, scene.phase_field.cells_z));
+                scene.method == Method::fdem
+                    ? fmt::format("no memory for a mesh of elements of {:.3g} m", scene.fdem.element_size)
+                    : fmt::format("no memory for a grid of {} x {} cells", scene.phase_field.cells_x, scene.phase_field.cells_z));
   } catch (const std::exception& error) {
     return fail(Fault::solver_crash, error.what());
   }

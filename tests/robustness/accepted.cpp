@@ -9,6 +9,8 @@
 namespace fracfarm::robustness {
 namespace {
 
+const GridLayout& grid_of(const RunResult& r) { return std::get<GridLayout>(r.layout); }
+
 constexpr double ledger_limit = 0.02;
 constexpr double rounding = 1e-9;  // of sums over a run
 constexpr double healing = 2e-4;   // the damage equation is solved to 1e-5 of its Jacobi image, records keep 2^-13
@@ -19,15 +21,16 @@ std::size_t nodes_of(const Scene& scene) {
 }
 
 std::vector<const std::vector<float>*> fields_of(const RunResult& r) {
-  std::vector<const std::vector<float>*> fields{&r.psi_initial, &r.psi_failure};
-  for (const Frame& frame : r.frames) fields.push_back(&frame.psi);
+  std::vector<const std::vector<float>*> fields{&r.damage_initial, &r.damage_failure};
+  for (const Frame& frame : r.frames) fields.push_back(&frame.damage);
   return fields;
 }
 
 std::string sizes(const Scene& scene, const RunResult& r) {
   const std::size_t nodes = nodes_of(scene);
-  if (r.x.size() * r.z.size() != nodes) return fmt::format("{} x {} nodes, not {}", r.x.size(), r.z.size(), nodes);
-  if (r.mask_initial.size() != nodes) return "mask of another size";
+  if (grid_of(r).x.size() * grid_of(r).z.size() != nodes)
+    return fmt::format("{} x {} nodes, not {}", grid_of(r).x.size(), grid_of(r).z.size(), nodes);
+  if (grid_of(r).mask.size() != nodes) return "mask of another size";
   if (r.frames.empty() || r.frames.front().time != 0.0) return "no frame at t = 0";
   for (const auto* field : fields_of(r))
     if (field->size() != nodes) return fmt::format("a field of {} values on {} nodes", field->size(), nodes);
@@ -54,15 +57,15 @@ std::string damage_in_range(const Scene&, const RunResult& r) {
 std::string cracks_held(const Scene&, const RunResult& r) {
   for (const auto* field : fields_of(r))
     for (std::size_t n = 0; n < field->size(); ++n)
-      if (r.mask_initial[n] && (*field)[n] != 1.0f) return fmt::format("psi = {} on node {} of an initial crack", (*field)[n], n);
+      if (grid_of(r).mask[n] && (*field)[n] != 1.0f) return fmt::format("psi = {} on node {} of an initial crack", (*field)[n], n);
   return {};
 }
 
 std::string never_heals(const Scene&, const RunResult& r) {
   for (std::size_t k = 1; k < r.frames.size(); ++k)
-    for (std::size_t n = 0; n < r.frames[k].psi.size(); ++n)
-      if (r.frames[k].psi[n] < r.frames[k - 1].psi[n] - healing)
-        return fmt::format("psi of node {} falls from {} to {} in frame {}", n, r.frames[k - 1].psi[n], r.frames[k].psi[n], k);
+    for (std::size_t n = 0; n < r.frames[k].damage.size(); ++n)
+      if (r.frames[k].damage[n] < r.frames[k - 1].damage[n] - healing)
+        return fmt::format("psi of node {} falls from {} to {} in frame {}", n, r.frames[k - 1].damage[n], r.frames[k].damage[n], k);
   return {};
 }
 
@@ -140,25 +143,25 @@ std::pair<bool, bool> spans(const std::vector<float>& psi, std::size_t columns, 
 
 bool cut(const Scene& scene, const RunResult& r, const std::vector<float>& psi, double threshold) {
   const bool up = driven(scene, Side::top, Side::bottom), across = driven(scene, Side::left, Side::right);
-  const auto [left_right, bottom_top] = spans(psi, r.x.size(), r.z.size(), threshold);
+  const auto [left_right, bottom_top] = spans(psi, grid_of(r).x.size(), grid_of(r).z.size(), threshold);
   return (left_right && (up || !across)) || (bottom_top && (across || !up));
 }
 
 std::string through_crack(const Scene& scene, const RunResult& r) {
   if (r.judgement.rule == "through_crack") {
-    if (!cut(scene, r, r.psi_failure, 0.9 - float_rounding)) return "no path of psi >= 0.9 joins the sides";
+    if (!cut(scene, r, r.damage_failure, 0.9 - float_rounding)) return "no path of psi >= 0.9 joins the sides";
     for (const Frame& frame : r.frames)
-      if (frame.time > 0.0 && frame.time < *r.judgement.time_to_failure && cut(scene, r, frame.psi, 0.9001))
+      if (frame.time > 0.0 && frame.time < *r.judgement.time_to_failure && cut(scene, r, frame.damage, 0.9001))
         return "a path was there before";
     return {};
   }
-  return cut(scene, r, r.psi_failure, 0.9001) ? "a path is there and no through crack was seen" : "";
+  return cut(scene, r, r.damage_failure, 0.9001) ? "a path is there and no through crack was seen" : "";
 }
 
 std::string stress_drop_time(const Scene&, const RunResult& r) {
   if (r.judgement.rule != "stress_drop") return {};
   bool breaks = false;
-  for (std::size_t n = 0; n < r.psi_failure.size(); ++n) breaks = breaks || (r.psi_failure[n] > 0.9f && r.psi_initial[n] <= 0.9f);
+  for (std::size_t n = 0; n < r.damage_failure.size(); ++n) breaks = breaks || (r.damage_failure[n] > 0.9f && r.damage_initial[n] <= 0.9f);
   if (!breaks) return "the body is as whole as it was at the start";
   const auto time = r.series["step_time"], stress = r.series["stress_zz"];
   const double at = *r.judgement.time_to_failure;

@@ -55,23 +55,23 @@ TEST_CASE("a sound run is accepted, and its ledger is closed without being empty
 }
 
 TEST_CASE("each rule of acceptance refuses what breaks it") {
-  CHECK(broken_by([](RunResult& r) { r.frames.back().psi.pop_back(); }) == "sizes");
+  CHECK(broken_by([](RunResult& r) { r.frames.back().damage.pop_back(); }) == "sizes");
   CHECK(broken_by([](RunResult& r) { at(r, "stress_xx", 3) = std::numeric_limits<double>::quiet_NaN(); }) == "finite");
-  CHECK(broken_by([](RunResult& r) { r.psi_failure[7] = 1.001f; }) == "damage_in_range");
+  CHECK(broken_by([](RunResult& r) { r.damage_failure[7] = 1.001f; }) == "damage_in_range");
   CHECK(broken_by([](RunResult& r) {
-          for (std::size_t n = 0; n < r.mask_initial.size(); ++n)
-            if (r.mask_initial[n]) r.psi_failure[n] = 0.99f;
+          for (std::size_t n = 0; n < std::get<GridLayout>(r.layout).mask.size(); ++n)
+            if (std::get<GridLayout>(r.layout).mask[n]) r.damage_failure[n] = 0.99f;
         }) == "cracks_held");
   CHECK(broken_by([](RunResult& r) {
-          r.frames.back().psi = std::vector<float>(r.frames.back().psi.size(), 1.0f), r.frames.front().psi = r.frames.back().psi,
-          r.frames.back().psi[0] = 0.5f;
+          r.frames.back().damage = std::vector<float>(r.frames.back().damage.size(), 1.0f), r.frames.front().damage = r.frames.back().damage,
+          r.frames.back().damage[0] = 0.5f;
         }) == "never_heals");
   CHECK(broken_by([](RunResult& r) { r.frames.back().time = 1.0; }) == "times");
   CHECK(broken_by([](RunResult& r) { r.judgement.time_to_failure.reset(); }) == "time_to_failure");
   CHECK(broken_by([](RunResult& r) { r.judgement.time_to_failure = 1.0; }) == "time_to_failure");
-  CHECK(broken_by([](RunResult& r) { r.psi_failure = r.psi_initial; }) == "through_crack");
+  CHECK(broken_by([](RunResult& r) { r.damage_failure = r.damage_initial; }) == "through_crack");
   CHECK(broken_by([](RunResult& r) {
-          r.judgement = {Verdict::failed, r.series["step_time"][5], "stress_drop", 1.0}, r.psi_failure = r.psi_initial;
+          r.judgement = {Verdict::failed, r.series["step_time"][5], "stress_drop", 1.0}, r.damage_failure = r.damage_initial;
         }) == "stress_drop");
   CHECK(broken_by([](RunResult& r) { r.peak_stress *= 0.9; }) == "peak");
   CHECK(broken_by([](RunResult& r) { at(r, "kinetic_energy", 20) *= 1.5; }) == "ledger_closed");

@@ -54,11 +54,11 @@ void check_same(const RunResult& a, const RunResult& b) {
   CHECK(a.steps == b.steps);
   CHECK(a.peak_stress == b.peak_stress);
   CHECK(a.energy_residual == b.energy_residual);
-  CHECK(a.psi_initial == b.psi_initial);
-  CHECK(a.psi_failure == b.psi_failure);
+  CHECK(a.damage_initial == b.damage_initial);
+  CHECK(a.damage_failure == b.damage_failure);
   CHECK(a.judgement.time_to_failure == b.judgement.time_to_failure);
   REQUIRE(a.frames.size() == b.frames.size());
-  for (std::size_t f = 0; f < a.frames.size(); ++f) CHECK(a.frames[f].psi == b.frames[f].psi);
+  for (std::size_t f = 0; f < a.frames.size(); ++f) CHECK(a.frames[f].damage == b.frames[f].damage);
   for (std::size_t c = 0; c < a.series.columns.size(); ++c) CHECK(a.series.columns[c].values == b.series.columns[c].values);
 }
 

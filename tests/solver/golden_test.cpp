@@ -65,7 +65,7 @@ std::string hash_of(Scene scene, Precision precision) {
   scene.phase_field.precision = precision;
   const auto result = solve(scene, {});
   REQUIRE(result);
-  std::string bytes(reinterpret_cast<const char*>(result->psi_failure.data()), result->psi_failure.size() * sizeof(float));
+  std::string bytes(reinterpret_cast<const char*>(result->damage_failure.data()), result->damage_failure.size() * sizeof(float));
   for (const char* name : {"step_time", "stress_xx", "stress_zz", "reaction_top", "kinetic_energy", "elastic_energy", "released_energy",
                            "surface_energy", "external_work", "crack_length"}) {
     const std::span<const double> values = result->series[name];

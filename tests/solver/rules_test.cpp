@@ -62,8 +62,8 @@ TEST_CASE("steps are linear until something could damage, and the run is the sam
     rules.linear_until_damage = false;
     const RunResult with = run(scene), without = run(scene, rules);
     CHECK(sum(with.series["solver_iterations"]) < sum(without.series["solver_iterations"]));
-    REQUIRE(with.psi_failure.size() == without.psi_failure.size());
-    for (std::size_t n = 0; n < with.psi_failure.size(); ++n) CHECK(std::abs(with.psi_failure[n] - without.psi_failure[n]) < 1e-4f);
+    REQUIRE(with.damage_failure.size() == without.damage_failure.size());
+    for (std::size_t n = 0; n < with.damage_failure.size(); ++n) CHECK(std::abs(with.damage_failure[n] - without.damage_failure[n]) < 1e-4f);
     CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(1e-5));
   }
 }

@@ -39,8 +39,8 @@ TEST_CASE("a pulled plate with a crack breaks, and says when, where and how well
   CHECK(*result.judgement.time_to_failure == Approx(static_cast<double>(result.steps) * result.dt).epsilon(1e-12));
   CHECK(result.energy_residual < 0.005);
   CHECK(result.frames.front().time == 0.0);
-  CHECK(result.frames.front().psi == result.psi_initial);
-  std::vector<double> psi(result.psi_failure.begin(), result.psi_failure.end());
+  CHECK(result.frames.front().damage == result.damage_initial);
+  std::vector<double> psi(result.damage_failure.begin(), result.damage_failure.end());
   std::vector<unsigned char> visited(psi.size());
   CHECK(joins_sides({psi, 41, 41}, through_crack_threshold, CrackDirection::left_right, visited));
   CHECK(result.stages.count("damage") == 1);
@@ -49,7 +49,7 @@ TEST_CASE("a pulled plate with a crack breaks, and says when, where and how well
 TEST_CASE("a run repeated gives the same bits") {
   const Scene scene = cracked("shale", 30);
   const RunResult one = run(scene), two = run(scene);
-  CHECK(one.psi_failure == two.psi_failure);
+  CHECK(one.damage_failure == two.damage_failure);
   CHECK(one.steps == two.steps);
   for (std::size_t c = 0; c < one.series.columns.size(); ++c) CHECK(one.series.columns[c].values == two.series.columns[c].values);
 }
@@ -138,7 +138,7 @@ TEST_CASE("a run told to go on to the horizon keeps the time and field of its th
   const RunResult late = run(scene);
   CHECK(late.steps > early.steps);
   CHECK(late.judgement.time_to_failure == early.judgement.time_to_failure);
-  CHECK(late.psi_failure == early.psi_failure);
+  CHECK(late.damage_failure == early.damage_failure);
 }
 
 // A stretched plate let go at t = 0 rings: its mean stress falls through zero.
@@ -161,8 +161,8 @@ TEST_CASE("a plate that loses its stress while its crack grows, but not through,
   const auto frame =
       std::find_if(result.frames.begin(), result.frames.end(), [&](const Frame& f) { return f.time == *result.judgement.time_to_failure; });
   REQUIRE(frame != result.frames.end());
-  CHECK(frame->psi == result.psi_failure);
-  CHECK(result.frames.back().psi != result.psi_failure);
+  CHECK(frame->damage == result.damage_failure);
+  CHECK(result.frames.back().damage != result.damage_failure);
 }
 
 TEST_CASE("layers of one material give the bits of a plate of it, another material changes them") {
@@ -171,8 +171,8 @@ TEST_CASE("layers of one material give the bits of a plate of it, another materi
   split.layers = {{0.4 * plain.height, plain.layers[0].material}, plain.layers[0]};
   mixed.layers = {{0.4 * plain.height, *find_material("aluminum")}, plain.layers[0]};
   const RunResult one = run(plain);
-  CHECK(run(split).psi_failure == one.psi_failure);
-  CHECK(run(mixed).psi_failure != one.psi_failure);
+  CHECK(run(split).damage_failure == one.damage_failure);
+  CHECK(run(mixed).damage_failure != one.damage_failure);
 }
 
 TEST_CASE("a pull on a part of a side loads that part only, and the ledger still closes") {

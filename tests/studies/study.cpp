@@ -14,7 +14,7 @@
 #include "common/base/text.hpp"
 #include "common/failure/new_crack.hpp"
 #include "common/scene/pattern.hpp"
-#include "solver/watch.hpp"
+#include "solver/through_crack_watch.hpp"
 
 namespace fracfarm::studies {
 
@@ -48,7 +48,7 @@ Ending ending_of(const Scene& scene) {
   for (const FailureTime& time : result->times)
     if (time.rule == "stress_drop") ending.stress_drop = time.time;
   ending.peak = result->peak_stress;
-  ending.psi = std::move(result->psi_failure);
+  ending.psi = std::move(result->damage_failure);
   ending.dt = result->dt;
   ending.cpu_s = result->cpu_s;
   return ending;
@@ -57,7 +57,7 @@ Ending ending_of(const Scene& scene) {
 Ending ending_of(const Scene& scene, GridSimulation& simulation) {
   Ending ending;
   ending.dt = scene.phase_field.cfl * simulation.stable_dt();
-  FailureWatch watch(watched_directions(scene));
+  ThroughCrackWatch watch(scene, simulation);
   const double start_s = thread_cpu_s();
   Result<void> moved = simulation.start(ending.dt);
   const std::vector<float> psi_initial = simulation.stored_damage();
@@ -66,10 +66,10 @@ Ending ending_of(const Scene& scene, GridSimulation& simulation) {
     moved = simulation.step(n, ending.dt);
     const double time = static_cast<double>(n + 1) * ending.dt, stress = simulation.mean_stress_zz();
     ending.peak = std::max(ending.peak, stress);
-    if (watch.drops_at(stress)) ending.stress_drop = time;
-    watch.at_row(simulation, stress);
+    if (watch.wants_row(stress)) ending.stress_drop = time;
+    watch.note_stress(stress);
     if (watch.psi_dropped().empty()) ending.stress_drop.reset();
-    watch.after_step(simulation, time);
+    watch.after_step(time);
   }
   ending.cpu_s = thread_cpu_s() - start_s;
   if (!moved) ending.rule = "diverged", ending.trouble = moved.error().message;
@@ -85,7 +85,7 @@ std::vector<float> damage_at(Scene scene, double time) {
   scene.stop = Stop::horizon;
   scene.horizon = scene.frame_interval = time;
   Result<RunResult> result = solve(scene, {});
-  return result && result->frames.size() > 1 ? std::move(result->frames[1].psi) : std::vector<float>{};
+  return result && result->frames.size() > 1 ? std::move(result->frames[1].damage) : std::vector<float>{};
 }
 
 double dice(const std::vector<float>& a, const std::vector<float>& b, double threshold) {
