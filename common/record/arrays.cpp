@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "common/record/grammar.hpp"
+#include "common/record/layouts.hpp"
 
 namespace fracfarm::grammar {
 
@@ -12,6 +12,7 @@ static_assert(std::endian::native == std::endian::little, "records are little-en
 std::size_t width_of(Type type) {
   switch (type) {
     case Type::f4:
+    case Type::i4:
       return 4;
     case Type::f8:
       return 8;
@@ -57,8 +58,27 @@ Array array_of(std::span<const std::string> texts) {
   return array;
 }
 
-std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims) {
+Array array_of_frames(const std::vector<std::vector<float>>& frames, std::vector<std::size_t> field) {
+  Array array{Type::f4, std::move(field), {}};
+  array.dims.insert(array.dims.begin(), frames.size());
+  array.bytes.reserve(array.count() * sizeof(float));
+  for (const std::vector<float>& frame : frames) array.bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * 4);
+  return array;
+}
+
+std::vector<std::vector<float>> frames_of(const Array& array) {
+  std::vector<std::vector<float>> frames;
+  if (array.count() == 0) return frames;  // any number of frames of nothing would fit a small file
+  const std::size_t values = array.count() / array.dims[0];
+  frames.reserve(array.dims[0]);
+  for (std::size_t t = 0; t < array.dims[0]; ++t)
+    std::memcpy(frames.emplace_back(values).data(), array.bytes.data() + t * values * 4, values * 4);
+  return frames;
+}
+
+std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, bool by_column) {
   constexpr std::size_t budget = 65536;
+  if (by_column) return {std::min(dims[0], budget), 1};
   std::vector<std::size_t> chunk(dims.size());
   std::size_t product = 1;
   for (std::size_t d = dims.size(); d-- > 0;) {

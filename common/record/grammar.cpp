@@ -1,47 +1,17 @@
+// The datasets that every method has, behind the frames of the method; and the table of methods.
 #include "common/record/grammar.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "common/record/rounding.hpp"
+#include "common/record/layouts.hpp"
 
 namespace fracfarm::grammar {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-template <class T>
-std::vector<T> values_of(const Array& array) {
-  std::vector<T> values(array.count());
-  std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
-  return values;
-}
-
-std::vector<std::size_t> plane(const Record& r) { return {r.phase_field.z.size(), r.phase_field.x.size()}; }
-
-Array take_psi(const View& view) {
-  const PhaseFieldFrames& f = view.record.phase_field;
-  Array array{Type::f4, {f.psi.size(), f.z.size(), f.x.size()}, {}};
-  array.bytes.reserve(array.count() * sizeof(float));
-  for (const std::vector<float>& frame : f.psi) array.bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * 4);
-  return array;
-}
-
-void give_psi(Record& r, const Array& array) {
-  const std::size_t nodes = array.dims[1] * array.dims[2];
-  if (nodes == 0) return;  // any number of frames of nothing would fit a small file
-  r.phase_field.psi.reserve(array.dims[0]);
-  for (std::size_t t = 0; t < array.dims[0]; ++t)
-    std::memcpy(r.phase_field.psi.emplace_back(nodes).data(), array.bytes.data() + t * nodes * 4, nodes * 4);
-}
 
 Array take_segments(const View& view) {
   const Record& r = view.record;
@@ -80,9 +50,6 @@ void give_times(Record& r, const Array& array) {
     if (!std::isnan(times[i])) r.failure_times[i].time = times[i];
 }
 
-Array take_mask(const View& view) { return {Type::i1, plane(view.record), bytes_of(view.record.phase_field.mask_initial)}; }
-void give_mask(Record& r, const Array& array) { r.phase_field.mask_initial = values_of<unsigned char>(array); }
-
 Array take_scene(const View& view) { return {Type::text, {view.record.canonical_scene.size()}, view.record.canonical_scene}; }
 void give_scene(Record& r, const Array& array) { r.canonical_scene = array.bytes; }
 
@@ -106,41 +73,8 @@ Array take_passed(const View& view) {
   return array;
 }
 
-const std::string z_dim = "/z", x_dim = "/x", t_dim = "/time";
-
-}  // namespace
-
-std::span<const DatasetRow> datasets() {
-  static const std::vector<DatasetRow> table{
-      {{"/time", Type::f8, {"/time"}, "s", "time of the frame since the start", "T"},
-       [](const View& v) { return array_of(v.record.phase_field.time, {v.record.phase_field.time.size()}); },
-       [](Record& r, const Array& a) { r.phase_field.time = doubles_of(a); }},
-      {{"/z", Type::f8, {"/z"}, "m", "height of the node above the lower side", "Y"},
-       [](const View& v) { return array_of(v.record.phase_field.z, {v.record.phase_field.z.size()}); },
-       [](Record& r, const Array& a) { r.phase_field.z = doubles_of(a); }},
-      {{"/x", Type::f8, {"/x"}, "m", "distance of the node from the left side", "X"},
-       [](const View& v) { return array_of(v.record.phase_field.x, {v.record.phase_field.x.size()}); },
-       [](Record& r, const Array& a) { r.phase_field.x = doubles_of(a); }},
-      {{"/psi", Type::f4, {t_dim, z_dim, x_dim}, "1", "phase field: 0 intact, 1 broken; row 0 at the bottom", "", psi_fraction_bits},
-       take_psi,
-       give_psi},
-      {{"/psi_initial", Type::f4, {z_dim, x_dim}, "1", "phase field at the start", "", psi_fraction_bits},
-       [](const View& v) {
-         return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_initial)};
-       },
-       [](Record& r, const Array& a) { r.phase_field.psi_initial = values_of<float>(a); }},
-      {{"/psi_failure",
-        Type::f4,
-        {z_dim, x_dim},
-        "1",
-        "phase field at time_to_failure, or the last state where there is none",
-        "",
-        psi_fraction_bits},
-       [](const View& v) {
-         return Array{Type::f4, plane(v.record), bytes_of(v.record.phase_field.psi_failure)};
-       },
-       [](Record& r, const Array& a) { r.phase_field.psi_failure = values_of<float>(a); }},
-      {{"/mask_initial", Type::i1, {z_dim, x_dim}, "1", "1 on nodes of the initial cracks, held at psi = 1"}, take_mask, give_mask},
+std::vector<DatasetRow> shared_datasets() {
+  return {
       {{"/cracks/segments", Type::f8, {"crack", "4"}, "m", "initial cracks as drawn: x0 z0 x1 z1"}, take_segments, give_segments},
       {{"/failure/rule", Type::text, {"candidate", "length"}, "", "criterion of each candidate time"}, take_rules, give_rules},
       {{"/failure/time", Type::f8, {"candidate"}, "s", "candidate times to failure, not a number where the criterion was not met"},
@@ -161,7 +95,52 @@ std::span<const DatasetRow> datasets() {
       {{"/checks/passed", Type::i1, {"check"}, "1", "1 where value <= limit"}, take_passed, nullptr},
       {{"/provenance/canonical_scene", Type::text, {"length"}, "", "the scene, canonical JSON"}, take_scene, give_scene},
   };
-  return table;
+}
+
+struct MethodRow {
+  std::string_view method;
+  std::vector<DatasetRow> (*frames)();
+  std::vector<AttributeRow> (*attributes)();
+};
+
+constexpr std::array<MethodRow, 2> methods{{
+    {"phase_field", phase_field_frames, phase_field_attributes},
+    {"fdem", fdem_frames, fdem_attributes},
+}};
+
+struct Layout {
+  std::string_view method;
+  std::vector<DatasetRow> datasets;
+  std::vector<AttributeRow> attributes;
+};
+
+const Layout* layout_of(std::string_view method) {
+  static const std::vector<Layout> layouts = [] {
+    std::vector<Layout> made;
+    for (const MethodRow& row : methods) {
+      Layout layout{row.method, row.frames(), shared_attributes()};
+      for (DatasetRow& shared : shared_datasets()) layout.datasets.push_back(std::move(shared));
+      for (const AttributeRow& own : row.attributes()) layout.attributes.push_back(own);
+      made.push_back(std::move(layout));
+    }
+    return made;
+  }();
+  const auto found = std::find_if(layouts.begin(), layouts.end(), [&](const Layout& layout) { return layout.method == method; });
+  return found == layouts.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+bool has_layout(std::string_view method) { return layout_of(method) != nullptr; }
+
+std::span<const DatasetRow> datasets(std::string_view method) {
+  const Layout* layout = layout_of(method);
+  return layout ? layout->datasets : std::span<const DatasetRow>{};
+}
+
+std::span<const AttributeRow> attributes(std::string_view method) {
+  const Layout* layout = layout_of(method);
+  return layout ? layout->attributes : std::span<const AttributeRow>{};
 }
 
 }  // namespace fracfarm::grammar

@@ -1,5 +1,6 @@
-// The grammar of a record file: every dataset and attribute, stated once. Writer, reader, validator and tests walk these tables; a new
-// dataset is a row here. Types are little-endian; every dataset is chunked, shuffled, deflated and checksummed (empty ones are compact).
+// The grammar of a record file: every dataset and attribute, stated once, by method of the simulation. Writer, reader, validator and tests
+// walk these tables; a new dataset is a row in grammar_<method>.cpp, a new method a row in grammar.cpp. Types are little-endian; every
+// dataset is chunked, shuffled, deflated and checksummed (empty ones are compact).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace fracfarm::grammar {
 
-inline constexpr std::string_view schema = "fracfarm.record/2";
+inline constexpr std::string_view schema = "fracfarm.record/3";
+inline constexpr std::string_view schema_2 = "fracfarm.record/2";  // still read; the phase field's layout is the same
 inline constexpr std::string_view schema_1 = "fracfarm.record/1";  // still read; it kept 12 mantissa bits of damage
 inline constexpr std::string_view conventions = "CF-1.10";
 inline constexpr std::string_view licence = "CC-BY-4.0";
@@ -25,7 +27,7 @@ inline constexpr std::size_t columns_limit = 256;                 // members of 
 
 // text: one ASCII character an element, the last dimension is the longest text, as CF has it. Not fixed-length strings: netCDF 4.9 crashes
 // on arrays of them. i1, not u1: ParaView 5.11 refuses a file with unsigned bytes.
-enum class Type { f4, f8, i1, text };
+enum class Type { f4, f8, i1, i4, text };
 
 std::size_t width_of(Type type);  // bytes of one element
 
@@ -47,6 +49,8 @@ struct DatasetSpec {
   std::string long_name;
   std::string axis{};     // T, Z, Y, X of a coordinate, or empty
   int fraction_bits = 0;  // 0: all
+  std::string rounding_note{};
+  bool by_column = false;  // each column of a table is chunks of its own: of coordinates they compress by a fifth better
 
   bool is_scale() const { return dims.size() == 1 && dims.front() == path; }
   // Name and text, beside those of dimension scales, in a file of that schema.
@@ -59,7 +63,7 @@ struct View {
   std::span<const ContentCheck> checks;
 };
 
-// A dataset that every record has. `give` puts a read array into the record; null: the content follows from the rest
+// A dataset that every record of a method has. `give` puts a read array into the record; null: the content follows from the rest
 // and is compared where the same build wrote it (another may have other rules).
 struct DatasetRow {
   DatasetSpec spec;
@@ -67,7 +71,8 @@ struct DatasetRow {
   void (*give)(Record&, const Array&);
 };
 
-std::span<const DatasetRow> datasets();  // dimension scales come before what uses them
+bool has_layout(std::string_view method);
+std::span<const DatasetRow> datasets(std::string_view method);  // dimension scales come before what uses them; empty without a layout
 
 // /series holds one f8 dataset a column, in order, over /series/step_time.
 DatasetSpec series_spec(std::string_view name, std::string_view unit);
@@ -82,12 +87,12 @@ struct AttributeRow {
   bool (*give)(Record&, const Value&);  // false where the value is not one of the allowed; null: follows from the rest and is compared
 };
 
-std::span<const AttributeRow> attributes();
+std::span<const AttributeRow> attributes(std::string_view method);  // `take` must do with an empty record
 
 std::span<const std::string_view> groups();  // beside the root; /provenance has any text attributes
 
-// As many trailing indices as fit 64 Ki elements make a chunk.
-std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims);
+// As many trailing indices as fit 64 Ki elements make a chunk, or as many rows of one column.
+std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, bool by_column);
 
 bool is_name(std::string_view name);  // letters, digits and _ . + -, at most name_limit
 

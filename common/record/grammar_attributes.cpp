@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/record/grammar.hpp"
+#include "common/record/layouts.hpp"
 
 namespace fracfarm::grammar {
 namespace {
@@ -38,6 +38,8 @@ bool give_time_to_failure(Record& r, const Value& value) {
   return true;
 }
 
+bool is_schema(std::string_view name) { return name == schema || name == schema_2 || name == schema_1; }
+
 Value solver_of(const Record& r) {
   const auto build = r.provenance.find("build_id");
   return "fracfarm " + (build == r.provenance.end() ? std::string("of unknown build") : build->second);
@@ -45,11 +47,11 @@ Value solver_of(const Record& r) {
 
 }  // namespace
 
-std::span<const AttributeRow> attributes() {
-  static const std::vector<AttributeRow> table{
+std::vector<AttributeRow> shared_attributes() {
+  return {
       {"/", "Conventions", [](const Record&) -> Value { return std::string(conventions); }, nullptr},
       {"/", "fracfarm_schema", [](const Record&) -> Value { return std::string(schema); },
-       [](Record&, const Value& v) { return std::get<std::string>(v) == schema || std::get<std::string>(v) == schema_1; }},
+       [](Record&, const Value& v) { return is_schema(std::get<std::string>(v)); }},
       {"/", "solver", solver_of, nullptr},
       {"/", "method", [](const Record& r) -> Value { return r.method; }, [](Record& r, const Value& v) { return give_text(r.method, v); }},
       {"/", "material", [](const Record& r) -> Value { return r.material; },
@@ -73,11 +75,7 @@ std::span<const AttributeRow> attributes() {
       {"/failure", "chosen_time", [](const Record& r) -> Value { return r.judgement.time_to_failure.value_or(nan); }, nullptr},
       {"/failure", "confidence", [](const Record& r) -> Value { return r.judgement.confidence; },
        [](Record& r, const Value& v) { return give_number(r.judgement.confidence, v); }},
-      {"/failure", "through_crack_threshold", [](const Record&) -> Value { return through_crack_threshold; }, nullptr},
-      {"/failure", "stress_drop_fraction", [](const Record&) -> Value { return stress_drop_fraction; }, nullptr},
-      {"/failure", "peak_prominence", [](const Record&) -> Value { return peak_prominence; }, nullptr},
   };
-  return table;
 }
 
 std::span<const std::string_view> groups() {
@@ -111,9 +109,10 @@ std::vector<std::pair<std::string, std::string>> DatasetSpec::attributes(std::st
   list.emplace_back("long_name", long_name);
   if (!axis.empty()) list.emplace_back("axis", axis);
   if (fraction_bits)
-    list.emplace_back("rounding", file_schema == schema_1
-                                      ? "to the nearest float with 12 explicit mantissa bits, ties to even; 0 and 1 are exact"
-                                      : "to the nearest multiple of 2^-" + std::to_string(fraction_bits) + ", ties to even");
+    list.emplace_back("rounding",
+                      file_schema == schema_1
+                          ? "to the nearest float with 12 explicit mantissa bits, ties to even; 0 and 1 are exact"
+                          : "to the nearest multiple of 2^-" + std::to_string(fraction_bits) + ", ties to even" + rounding_note);
   return list;
 }
 

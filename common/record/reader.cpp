@@ -47,6 +47,7 @@ class Reader {
   std::size_t budget_;
   h5::Silence silence_;
   h5::Handle file_;
+  std::string method_;  // says which layout
   Reading reading_;
   std::set<std::string> objects_;        // every path that is there as a hard link
   std::vector<std::string> columns_;     // of /series, in order
@@ -61,6 +62,11 @@ Reading Reader::read() {
     return std::move(reading_);
   }
   if (!h5::has_checksums(file_)) violate("the file format is older than HDF5 1.10: its metadata carries no checksums");
+  method_ = h5::text_attribute(file_, "/", "method").value_or("");
+  if (!grammar::has_layout(method_)) {
+    violate(fmt::format("/: the attribute 'method' is missing or '{}', which has no layout", method_.substr(0, 60)));
+    return std::move(reading_);
+  }
   object_lists();
   fixed_datasets();
   series();
@@ -74,7 +80,7 @@ Reading Reader::read() {
 // Which objects there are, and that no others are.
 void Reader::object_lists() {
   std::set<std::string> known;
-  for (const grammar::DatasetRow& row : grammar::datasets()) known.insert(row.spec.path);
+  for (const grammar::DatasetRow& row : grammar::datasets(method_)) known.insert(row.spec.path);
   for (std::string_view group : grammar::groups()) known.insert(std::string(group));
   std::vector<std::string> parents{""};
   for (std::string_view group : grammar::groups()) parents.emplace_back(group);
@@ -113,7 +119,7 @@ std::optional<Array> Reader::dataset(const DatasetSpec& spec, bool keep_array) {
 }
 
 void Reader::fixed_datasets() {
-  for (const grammar::DatasetRow& row : grammar::datasets())
+  for (const grammar::DatasetRow& row : grammar::datasets(method_))
     if (const std::optional<Array> array = dataset(row.spec, !row.give); array && row.give) row.give(reading_.record, *array);
 }
 
@@ -132,10 +138,10 @@ void Reader::series() {
 void Reader::attributes() {
   std::map<std::string, std::set<std::string>> known{{"/", {}}};
   for (std::string_view group : grammar::groups()) known[std::string(group)];
-  for (const grammar::AttributeRow& row : grammar::attributes()) {
+  for (const grammar::AttributeRow& row : grammar::attributes(method_)) {
     const std::string object(row.object), name(row.name);
     known[object].insert(name);
-    const std::optional<grammar::Value> value = h5::value_attribute(file_, object, name, row.take(reading_.record).index());
+    const std::optional<grammar::Value> value = h5::value_attribute(file_, object, name, row.take({}).index());
     if (!value)
       violate(fmt::format("{}: the attribute '{}' is missing or not of its type", object, name));
     else if (row.give && !row.give(reading_.record, *value))
@@ -170,10 +176,10 @@ void Reader::derived() {
   reading_.checks = check_content(record);
   const auto build = record.provenance.find("build_id");
   const bool own = build != record.provenance.end() && build->second == build_info().build_id;  // another build may have other rules
-  for (const grammar::DatasetRow& row : grammar::datasets())
+  for (const grammar::DatasetRow& row : grammar::datasets(method_))
     if (own && !row.give && arrays_[row.spec.path] != row.take({record, reading_.checks}))
       violate(fmt::format("{}: differs from what the record's content gives", row.spec.path));
-  for (const grammar::AttributeRow& row : grammar::attributes()) {
+  for (const grammar::AttributeRow& row : grammar::attributes(method_)) {
     const grammar::Value expected = row.take(record);
     const auto value = h5::value_attribute(file_, std::string(row.object), std::string(row.name), expected.index());
     if (!row.give && !(value && grammar::same(*value, expected)))

@@ -13,4 +13,7 @@ inline constexpr int psi_fraction_bits = 13;
 // find.
 void round_damage(std::span<float> values);
 
+// The same for the joints of a mesh, where exactly 1 means broken: what is below 1 stays below, at most 1 - 2^-psi_fraction_bits.
+void round_joint_damage(std::span<float> values);
+
 }  // namespace fracfarm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace fracfarm::h5 {
 
@@ -13,6 +14,8 @@ Handle file_type(grammar::Type type) {
       return h5::type(H5Tcopy(H5T_IEEE_F64LE));
     case grammar::Type::i1:
       return h5::type(H5Tcopy(H5T_STD_I8LE));
+    case grammar::Type::i4:
+      return h5::type(H5Tcopy(H5T_STD_I32LE));
     case grammar::Type::text:
       break;
   }
@@ -37,8 +40,8 @@ Handle use_file_type() {
 
 Handle scale_list_type() { return h5::type(H5Tvlen_create(H5T_STD_REF_OBJ)); }
 
-ChunkWalk::ChunkWalk(const std::vector<std::size_t>& dims, std::size_t width)
-    : dims_(dims), chunk_(grammar::chunk_dims(dims)), width_(width), chunk_bytes_(width), offset_(dims.size(), 0) {
+ChunkWalk::ChunkWalk(const std::vector<std::size_t>& dims, std::vector<std::size_t> chunk, std::size_t width)
+    : dims_(dims), chunk_(std::move(chunk)), width_(width), chunk_bytes_(width), offset_(dims.size(), 0) {
   for (std::size_t extent : chunk_) chunk_bytes_ *= extent;
 }
 

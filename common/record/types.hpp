@@ -27,7 +27,7 @@ Handle scale_list_type();  // DIMENSION_LIST: variable-length list of object ref
 // Visits the chunks of an array in row-major order. Chunks at the far edges are whole in the file, padded with zeros.
 class ChunkWalk {
  public:
-  ChunkWalk(const std::vector<std::size_t>& dims, std::size_t width);
+  ChunkWalk(const std::vector<std::size_t>& dims, std::vector<std::size_t> chunk, std::size_t width);
 
   const hsize_t* offset() const { return offset_.data(); }
   bool next();  // false after the last chunk

@@ -48,10 +48,10 @@ class Writer {
     return id;
   }
   void text(hid_t object, const std::string& name, const std::string& value, H5T_str_t padding = H5T_STR_NULLPAD);
-  void fill(hid_t dataset, const Array& array);
+  void fill(hid_t dataset, const DatasetSpec& spec, const Array& array);
   void mark_scale(hid_t dataset, const DatasetSpec& spec);
   void attach(hid_t dataset, const DatasetSpec& spec);
-  h5::Handle layout(const Array& array);
+  h5::Handle layout(const DatasetSpec& spec, const Array& array);
 
   h5::Silence silence_;
   h5::MemoryImage image_;  // outlives file_
@@ -111,13 +111,13 @@ void Writer::attribute(std::string_view object, const std::string& name, const g
     must(H5Awrite(made, H5T_NATIVE_UINT64, &std::get<std::uint64_t>(value)));
 }
 
-h5::Handle Writer::layout(const Array& array) {
+h5::Handle Writer::layout(const DatasetSpec& spec, const Array& array) {
   h5::Handle list = plain_object(H5P_DATASET_CREATE);
   if (array.count() == 0) {
     H5Pset_layout(list, H5D_COMPACT);
     return list;
   }
-  const std::vector<std::size_t> chunk = grammar::chunk_dims(array.dims);
+  const std::vector<std::size_t> chunk = grammar::chunk_dims(array.dims, spec.by_column);
   const std::vector<hsize_t> extents(chunk.begin(), chunk.end());
   must(H5Pset_chunk(list, static_cast<int>(extents.size()), extents.data()));
   if (h5::shuffled(array.type)) must(H5Pset_shuffle(list));
@@ -131,9 +131,10 @@ void Writer::dataset(const DatasetSpec& spec, const Array& array) {
   const std::vector<hsize_t> extents(array.dims.begin(), array.dims.end());
   const h5::Handle space = h5::space(must(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr)));
   const h5::Handle type = h5::file_type(array.type);
-  const h5::Handle made = h5::dataset(must(H5Dcreate2(file_, spec.path.c_str(), type, space, H5P_DEFAULT, layout(array), H5P_DEFAULT)));
+  const h5::Handle made =
+      h5::dataset(must(H5Dcreate2(file_, spec.path.c_str(), type, space, H5P_DEFAULT, layout(spec, array), H5P_DEFAULT)));
   if (!ok_) return;
-  if (array.count()) fill(made, array);
+  if (array.count()) fill(made, spec, array);
   for (const auto& [name, value] : spec.attributes()) text(made, name, value);
   if (spec.is_scale())
     mark_scale(made, spec);
@@ -142,9 +143,9 @@ void Writer::dataset(const DatasetSpec& spec, const Array& array) {
 }
 
 // Every chunk compressed here and handed over whole, past HDF5's own slower filters.
-void Writer::fill(hid_t dataset, const Array& array) {
+void Writer::fill(hid_t dataset, const DatasetSpec& spec, const Array& array) {
   const std::size_t width = grammar::width_of(array.type);
-  h5::ChunkWalk walk(array.dims, width);
+  h5::ChunkWalk walk(array.dims, grammar::chunk_dims(array.dims, spec.by_column), width);
   std::string spare;
   for (bool more = true; more; more = walk.next()) {
     const std::string_view stored = encode_chunk(walk.bytes_of(array.bytes, spare), width);
@@ -236,21 +237,26 @@ Record as_stored(Record record) {
   for (std::vector<float>& frame : record.phase_field.psi) round_damage(frame);
   round_damage(record.phase_field.psi_initial);
   round_damage(record.phase_field.psi_failure);
+  for (std::vector<float>& frame : record.fdem.damage) round_joint_damage(frame);
+  round_joint_damage(record.fdem.damage_initial);
+  round_joint_damage(record.fdem.damage_failure);
   return record;
 }
 
 Result<std::string> record_bytes(Record given) {
+  if (!grammar::has_layout(given.method)) return fail(Fault::output_bad, fmt::format("no record has a layout for '{}'", given.method));
   if (std::string why = broken_shape(given); !why.empty()) return fail(Fault::output_bad, why);
   if (std::string why = broken_text(given); !why.empty()) return fail(Fault::output_bad, why);
   const Record record = as_stored(std::move(given));
   const std::vector<ContentCheck> checks = check_content(record);
   Writer writer;
   for (std::string_view path : grammar::groups()) writer.group(path);
-  for (const grammar::DatasetRow& row : grammar::datasets()) writer.dataset(row.spec, row.take({record, checks}));
+  for (const grammar::DatasetRow& row : grammar::datasets(record.method)) writer.dataset(row.spec, row.take({record, checks}));
   for (const Column& column : record.series.columns)
     writer.dataset(grammar::series_spec(column.name, column.unit), grammar::series_array(column));
   writer.link_scales();
-  for (const grammar::AttributeRow& row : grammar::attributes()) writer.attribute(row.object, std::string(row.name), row.take(record));
+  for (const grammar::AttributeRow& row : grammar::attributes(record.method))
+    writer.attribute(row.object, std::string(row.name), row.take(record));
   for (const auto& [name, value] : record.provenance) writer.attribute("/provenance", name, value);
   return writer.finish();
 }

@@ -129,7 +129,7 @@ TEST_CASE("a record of the first schema is read, and one that mixes the two is n
 }
 
 TEST_CASE("every dataset of the grammar is missed where it is gone") {
-  for (const grammar::DatasetRow& row : grammar::datasets()) {
+  for (const grammar::DatasetRow& row : grammar::datasets("phase_field")) {
     const std::string path = row.spec.path;
     CHECK(has(said_after([&](hid_t f) { H5Ldelete(f, path.c_str(), H5P_DEFAULT); }), (path + ": missing").c_str()));
   }

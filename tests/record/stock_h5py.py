@@ -11,7 +11,7 @@ except ImportError as error:
 
 path, frames, last_time, largest, mean = sys.argv[1], int(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5])
 with h5py.File(path, "r") as record:
-    assert record.attrs["Conventions"] == b"CF-1.10" and record.attrs["fracfarm_schema"] == b"fracfarm.record/2"
+    assert record.attrs["Conventions"] == b"CF-1.10" and record.attrs["fracfarm_schema"] == b"fracfarm.record/3"
     psi = record["psi"]
     assert psi.shape[0] == frames and psi.dtype == numpy.dtype("<f4"), (psi.shape, psi.dtype)
     assert psi.shape[1:] == (record["z"].shape[0], record["x"].shape[0])
