@@ -48,6 +48,7 @@ constexpr auto table = std::to_array<Verb>({
     {"cancel", "Mend", "take jobs out that are not done", run_cancel},
     {"drain", "Mend", "let workers finish and end", run_drain},
     {"solve", "One simulation", "solve one scene and write its record", nullptr},
+    {"mesh", "One simulation", "make, measure and draw the FDEM mesh of a scene", nullptr},
     {"check", "One simulation", "is this record sound: name every broken rule", run_check},
     {"show", "One simulation", "what a record holds, in words or as a picture", run_show},
     {"scene", "One simulation", "print the scene of one sample, or check a scene file", run_scene},

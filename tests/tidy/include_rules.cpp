@@ -24,7 +24,7 @@ const std::vector<Room>& rooms() {
       {"common/task", {"common/base", "common/failure"}},
       {"common/wire", {"common/base", "common/failure"}},
       {"solver/law", {}},
-      {"solver/program", {"solver", "common/"}},
+      {"solver/program", {"solver", "solver/fdem/mesh", "common/"}},
       {"solver/phasefield", {"solver", "solver/law", "common/base", "common/material", "common/scene", "common/failure"}},
       {"solver/fdem", {"solver", "solver/law", "common/base", "common/material", "common/scene", "common/failure"}},
       {"solver", {"solver/law", "solver/phasefield", "solver/fdem", "common/base", "common/material", "common/scene", "common/failure"}},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/scene/pattern.hpp"
 #include "solver/fdem/mesh/assemble.hpp"
 #include "solver/fdem/mesh/geometry.hpp"
 
@@ -43,6 +44,23 @@ bool on_a_side(const std::array<double, 2>& p, const std::array<double, 2>& q, c
   return (p[0] == q[0] && (p[0] == 0.0 || p[0] == choice.width)) || (p[1] == q[1] && (p[1] == 0.0 || p[1] == choice.height));
 }
 
+Vec node(const TriangleMesh& mesh, int i) {
+  return {mesh.nodes[static_cast<std::size_t>(i)][0], mesh.nodes[static_cast<std::size_t>(i)][1]};
+}
+
+std::vector<Segment> crack_edges_of(const TriangleMesh& mesh, const MeshChoice& choice) {
+  std::vector<Segment> edges{{0, 0, choice.width, 0},
+                             {0, choice.height, choice.width, choice.height}};  // a crack along a side parts nothing
+  edges.push_back({0, 0, 0, choice.height});
+  edges.push_back({choice.width, 0, choice.width, choice.height});
+  for (std::size_t e = 0; e < mesh.edge_nodes.size(); ++e) {
+    if (mesh.edge_kind[e] != EdgeKind::crack) continue;
+    const Vec p = node(mesh, mesh.edge_nodes[e][0]), q = node(mesh, mesh.edge_nodes[e][1]);
+    edges.push_back({p.x, p.z, q.x, q.z});
+  }
+  return edges;
+}
+
 }  // namespace
 
 std::string gate(const TriangleMesh& mesh, const MeshChoice& choice, MeshReport& report) {
@@ -62,6 +80,23 @@ std::string gate(const TriangleMesh& mesh, const MeshChoice& choice, MeshReport&
     const auto& at = mesh.nodes[static_cast<std::size_t>(mesh.triangles[shapes.lowest][0])];
     return fmt::format("a triangle near ({:.4g}, {:.4g}) m is {:.3g} mm high; at least {:.3g} mm with elements of {:.3g} mm", at[0], at[1],
                        1e3 * report.smallest_height, 1e3 * least, 1e3 * choice.element_size);
+  }
+  return {};
+}
+
+// Samples each crack four times an element and looks for a crack edge within reach.
+std::string uncovered_crack(const TriangleMesh& mesh, const MeshChoice& choice, double reach) {
+  const std::vector<Segment> edges = crack_edges_of(mesh, choice);
+  for (std::size_t i = 0; i < choice.cracks.size(); ++i) {
+    Segment crack = choice.cracks[i];
+    if (!clip(crack, choice.width, choice.height)) continue;
+    const int samples = static_cast<int>(std::ceil(4 * length(crack) / choice.element_size)) + 1;
+    for (int k = 0; k <= samples; ++k) {
+      const Vec p = along(first(crack), last(crack), static_cast<double>(k) / samples);
+      const auto near = [&](const Segment& edge) { return distance_to(p, first(edge), last(edge)) < reach; };
+      if (std::none_of(edges.begin(), edges.end(), near))
+        return fmt::format("crack {} has no edge of the mesh along it at ({:.6g}, {:.6g}) m, within {:.3g} mm", i, p.x, p.z, 1e3 * reach);
+    }
   }
   return {};
 }

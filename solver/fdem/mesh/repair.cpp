@@ -11,8 +11,9 @@
 namespace fracfarm::fdem {
 namespace {
 
-constexpr double most_elements = 2e6;  // elements of the size that fit in the body
-constexpr int most_rounds = 5;         // of repair; what is left then is the crack graph's
+constexpr double most_elements = 2e6;  // squares of the element size in the body
+constexpr double most_metres = 1e6;
+constexpr int most_rounds = 5;  // of repair; what is left then is the crack graph's
 
 std::string mm(double metres) { return fmt::format("{:.4g} mm", 1e3 * metres); }
 
@@ -28,20 +29,20 @@ std::string refused_layer(const MeshChoice& choice, double tolerance) {
   return {};
 }
 
-std::string refused_crack(const MeshChoice& choice, double tolerance) {
-  double total = 0.0;
-  for (std::size_t i = 0; i < choice.cracks.size(); ++i) {
-    Segment crack = choice.cracks[i];
-    if (!std::isfinite(crack.x0) || !std::isfinite(crack.z0) || !std::isfinite(crack.x1) || !std::isfinite(crack.z1))
-      return fmt::format("crack {} has an end that is not finite", i);
-    if (length(crack) < tolerance)
-      return fmt::format("crack {} is {} long; at least half an element, {}", i, mm(length(crack)), mm(tolerance));
-    if (clip(crack, choice.width, choice.height)) total += length(crack) + choice.element_size;
-  }
-  const double most = 2 * choice.width * choice.height / choice.element_size + 4 * choice.element_size;
-  if (total > most)
-    return fmt::format("the cracks have {:.4g} m together; at most {:.4g} m with elements of {}", total, most, mm(choice.element_size));
+std::string short_crack(const MeshChoice& choice, double tolerance) {
+  for (std::size_t i = 0; i < choice.cracks.size(); ++i)
+    if (const double its = length(choice.cracks[i]); its < tolerance)
+      return fmt::format("crack {} is {} long; at least half an element, {}", i, mm(its), mm(tolerance));
   return {};
+}
+
+std::string too_many_cracks(const MeshChoice& choice) {
+  double total = 0.0;
+  for (Segment crack : choice.cracks)
+    if (clip(crack, choice.width, choice.height)) total += length(crack) + choice.element_size;
+  const double most = 2 * choice.width * choice.height / choice.element_size + 4 * choice.element_size;
+  if (total <= most) return {};
+  return fmt::format("the cracks have {:.4g} m together; at most {:.4g} m with elements of {}", total, most, mm(choice.element_size));
 }
 
 // One round's work on the cracks; every step says whether it changed anything.
@@ -184,16 +185,25 @@ class Repairer {
 
 }  // namespace
 
+std::string refusal_of_numbers(const MeshChoice& choice) {
+  for (const double size : {choice.element_size, choice.width, choice.height})
+    if (!(size > 0 && size < most_metres)) return fmt::format("width, height and element size must be above 0 and below {} m", most_metres);
+  for (std::size_t i = 0; i < choice.cracks.size(); ++i)
+    for (const double value : {choice.cracks[i].x0, choice.cracks[i].z0, choice.cracks[i].x1, choice.cracks[i].z1})
+      if (!(std::fabs(value) < most_metres)) return fmt::format("crack {} has an end that is not finite or beyond {} m", i, most_metres);
+  return too_many_cracks(choice);
+}
+
 std::string refusal(const MeshChoice& choice) {
+  if (std::string sentence = refusal_of_numbers(choice); !sentence.empty()) return sentence;
   const double h = choice.element_size, tolerance = 0.5 * h;
-  if (!(h > 0) || !std::isfinite(h) || !std::isfinite(choice.width) || !std::isfinite(choice.height))
-    return "element size, width and height must be finite, and the element size above 0";
-  if (!(std::min(choice.width, choice.height) >= 2 * h))
+  if (std::min(choice.width, choice.height) < 2 * h)
     return fmt::format("the body is {} x {}; at least two elements of {} each way", mm(choice.width), mm(choice.height), mm(h));
   if (choice.width * choice.height > most_elements * h * h)
-    return fmt::format("elements of {} would be {:.3g}; at most {:.3g} fit", mm(h), choice.width * choice.height / (h * h), most_elements);
-  std::string sentence = refused_layer(choice, tolerance);
-  return sentence.empty() ? refused_crack(choice, tolerance) : sentence;
+    return fmt::format("{:.3g} squares of {} would fit in the body; at most {:.3g}", choice.width * choice.height / (h * h), mm(h),
+                       most_elements);
+  if (std::string sentence = refused_layer(choice, tolerance); !sentence.empty()) return sentence;
+  return short_crack(choice, tolerance);
 }
 
 RepairedCracks repair(const MeshChoice& choice) { return Repairer(choice, 0.5 * choice.element_size).run(); }

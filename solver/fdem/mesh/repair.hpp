@@ -16,8 +16,11 @@ struct RepairedCracks {
 };
 
 // A sentence where the choice cannot be meshed at all: values that are not finite, a body or a layer of less than an element, a crack
-// shorter than half an element, more elements or cracks than the limits of make_mesh.hpp.
+// shorter than half an element, more elements than the body may have, more cracks than fit.
 std::string refusal(const MeshChoice& choice);
+
+// The part of it that holds for meshes from files, too: finite numbers, and no more cracks than can be looked at.
+std::string refusal_of_numbers(const MeshChoice& choice);
 
 // The choice must have passed refusal().
 RepairedCracks repair(const MeshChoice& choice);
