@@ -1,0 +1,112 @@
+// The work on blocks of 16 triangles or joints, compiled once for each instruction set and number type from the same sources (kernels/) and
+// chosen when a run starts; which block when is the business of solver.cpp. Every path gives the same bits: no contraction, and the sums of
+// a chunk are 16 partial sums added in a fixed order.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "solver/law/corotated.hpp"
+#include "solver/law/j2.hpp"
+#include "solver/law/joint.hpp"
+
+namespace fracfarm::fdem {
+
+inline constexpr int lanes = 16;        // in a block
+inline constexpr int row_size = 8;      // x0 z0 x1 z1 x2 z2 x0 z0: edge k of a triangle is one load of four at 2 k
+inline constexpr int slot_size = 12;    // forces of a triangle's three joints, four numbers an edge: both ends
+inline constexpr int shape_count = 6;   // B11 B12 B21 B22 area inverse mass
+inline constexpr int corner_count = 6;  // x0 z0 x1 z1 x2 z2
+
+// Constants of a block of triangles.
+template <class Real>
+struct TriangleLaw {
+  law::Stiffness<Real> stiffness;
+  law::J2<Real> j2;
+  Real viscosity;  // Pa s, of the rate of strain
+  Real per_mass;   // 3 / density, m^3/kg
+  bool plastic;
+};
+
+// What a block of triangles needs beside its own motion; 0 for most.
+enum BlockNeeds : unsigned char { needs_extra = 1, needs_told = 2 };
+
+// What a block of joints went through.
+enum JointState : unsigned char { joint_followed = 1, joint_damaged = 2, joint_broke = 4 };
+
+enum class Curve { munjiza, linear };
+
+// Raw pointers: what every kernel sees. [b] is a block, [l] a lane in it.
+template <class Real>
+struct View {
+  // Triangles.
+  const Real* shape;                 // [b][shape_count][l], 1/m, m^2, m/kg; B is the inverse of the edges' matrix
+  const TriangleLaw<Real>* laws;     //
+  const int* law_of_block;           // [b]
+  Real *u, *v;                       // [b][corner_count][l], m, m/s (half a step behind)
+  Real* rows;                        // [triangle][row_size], the same displacements
+  Real* slots;                       // [triangle][slot_size], N/m
+  Real* plastic;                     // [b][4][l], plastic strain and alpha; nullptr where nothing yields
+  const unsigned char* needs;        // [b], BlockNeeds
+  const Real* extra;                 // [triangle][row_size], N/m: tractions, weight, contact
+  const int* told_of_block;          // [b], index into the arrays below
+  const Real *told, *told_velocity;  // [i][corner_count][l]: 1 where the velocity is told, and that velocity of the next half step
+  Real* told_force;                  // [i][corner_count][l], N/m: internal force and extra
+  // Joints.
+  const int *left_side, *right_side;  // [b][l], 3 t + k
+  const int *left_row, *right_row;    // [b][l], of `rows`
+  const Real* length;                 // [b][l], m
+  const Real* along;                  // [b][2][l], m: from the first node to the second, undeformed
+  Real* damage;                       // [b][2][l], at the two points
+  Real* opening;                      // [b][4][l], m: at both nodes, where the block was followed
+  unsigned char* joint_state;         // [b], JointState
+  const law::Joint<Real>* joint_laws;
+  const int* joint_law_of_block;  // [b]
+  Curve curve;
+  bool always_follow;  // the damage arithmetic in every block
+  bool always_flow;    // the radial return in every block
+};
+
+struct Blocks {
+  int begin, end;
+};
+
+// What the triangles of a chunk add to the ledger of a step.
+struct AdvanceSums {
+  double viscous;  // W/m: power of viscosity before the kick
+  double plastic;  // J/m
+};
+
+struct JointSums {
+  double stored;    // J/m
+  double fracture;  // J/m, gone in this step
+};
+
+// The state as it is, without moving it.
+struct TriangleSums {
+  double stress_xx, stress_zz;  // N: over the area
+  double elastic, plastic;      // J/m; plastic is what this configuration would still add
+  double viscous;               // W/m
+  double kinetic;               // J/m: 1/2 m v- v+ of the velocities half a step before and after
+  double fastest;               // m^2/s^2, largest square of a velocity
+};
+
+template <class Real>
+struct Kernels {
+  std::string_view isa;
+  // Forces at u, v += dt f / m, u += dt v.
+  AdvanceSums (*advance)(const View<Real>&, Blocks, Real dt);
+  TriangleSums (*measure)(const View<Real>&, Blocks, Real dt);
+  // Traction of the joints at u, into the slots of both sides.
+  JointSums (*join)(const View<Real>&, Blocks);
+};
+
+// Paths that this processor runs, best first; the last is the baseline, which every processor runs.
+template <class Real>
+std::span<const Kernels<Real>* const> runnable_kernels();
+
+// The best runnable path, or the one that the environment variable FRACFARM_ISA (baseline, v3, v4) names where it runs here.
+template <class Real>
+const Kernels<Real>& chosen_kernels();
+
+}  // namespace fracfarm::fdem

@@ -1,0 +1,250 @@
+// A register of numbers, as wide as the instruction set has it, and how rows in memory become registers and back. Included by the kernels
+// only, which are compiled once for each instruction set and number type; everything is inlined, so that no instruction of a higher set
+// leaks into shared code.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "solver/fdem/kernels.hpp"
+
+#define INLINE __attribute__((always_inline)) inline
+
+namespace fracfarm::fdem::FRACFARM_KERNELS {
+
+using Real = FRACFARM_REAL;
+using View = fdem::View<Real>;
+using Index = std::ptrdiff_t;
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#define FRACFARM_MASKS 1
+inline constexpr int register_bytes = 64;
+#elif defined(__AVX2__)
+inline constexpr int register_bytes = 32;
+#else
+inline constexpr int register_bytes = 16;
+#endif
+inline constexpr int width = register_bytes / int(sizeof(Real)) > 4 ? register_bytes / int(sizeof(Real)) : 4;
+inline constexpr int parts = lanes / width;  // registers in a block
+
+typedef Real Raw __attribute__((vector_size(width * sizeof(Real))));
+typedef Real Four __attribute__((vector_size(4 * sizeof(Real))));
+typedef Real Eight __attribute__((vector_size(8 * sizeof(Real))));
+
+#if defined(FRACFARM_MASKS)
+using RawMask = std::conditional_t<width == 16, __mmask16, __mmask8>;
+INLINE RawMask above(__m512 a, __m512 b) { return RawMask(_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ)); }
+INLINE RawMask above(__m512d a, __m512d b) { return RawMask(_mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)); }
+INLINE Raw pick(RawMask m, __m512 a, __m512 b) { return Raw(_mm512_mask_blend_ps(__mmask16(m), b, a)); }
+INLINE Raw pick(RawMask m, __m512d a, __m512d b) { return Raw(_mm512_mask_blend_pd(__mmask8(m), b, a)); }
+#else
+using RawMask = decltype(Raw{} > Raw{});
+INLINE RawMask above(Raw a, Raw b) { return a > b; }
+INLINE Raw pick(RawMask m, Raw a, Raw b) { return m ? a : b; }
+#endif
+
+struct Mask {
+  RawMask raw;
+  friend INLINE Mask operator&(Mask a, Mask b) { return {RawMask(a.raw & b.raw)}; }
+  friend INLINE Mask operator~(Mask a) { return {RawMask(~a.raw)}; }
+  friend INLINE Mask operator|(Mask a, Mask b) { return {RawMask(a.raw | b.raw)}; }
+};
+
+struct Lanes {
+  Raw raw;
+  Lanes() = default;
+  INLINE Lanes(Raw r) : raw(r) {}
+  INLINE Lanes(Real a) : raw(a - Raw{}) {}
+  template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number> && !std::is_same_v<Number, Real>>>
+  explicit INLINE Lanes(Number a) : raw(Real(a) - Raw{}) {}
+  friend INLINE Lanes operator+(Lanes a, Lanes b) { return a.raw + b.raw; }
+  friend INLINE Lanes operator-(Lanes a, Lanes b) { return a.raw - b.raw; }
+  friend INLINE Lanes operator*(Lanes a, Lanes b) { return a.raw * b.raw; }
+  friend INLINE Lanes operator/(Lanes a, Lanes b) { return a.raw / b.raw; }
+  friend INLINE Lanes operator-(Lanes a) { return -a.raw; }
+  friend INLINE Mask operator>(Lanes a, Lanes b) { return {above(a.raw, b.raw)}; }
+};
+
+INLINE Lanes select(Mask m, Lanes a, Lanes b) { return pick(m.raw, a.raw, b.raw); }
+INLINE Lanes larger(Lanes a, Lanes b) { return select(a > b, a, b); }
+INLINE Lanes smaller(Lanes a, Lanes b) { return select(a > b, b, a); }
+
+INLINE Lanes sqrt(Lanes a) {
+#if defined(FRACFARM_MASKS)
+  if constexpr (sizeof(Real) == 4)
+    return Raw(_mm512_mask_sqrt_ps(__m512(a.raw), __mmask16(-1), __m512(a.raw)));
+  else
+    return Raw(_mm512_mask_sqrt_pd(__m512d(a.raw), __mmask8(-1), __m512d(a.raw)));
+#elif defined(__AVX2__)
+  if constexpr (sizeof(Real) == 4)
+    return Raw(_mm256_sqrt_ps(__m256(a.raw)));
+  else
+    return Raw(_mm256_sqrt_pd(__m256d(a.raw)));
+#else
+  Raw root{};
+  for (int l = 0; l < width; ++l) root[l] = std::sqrt(a.raw[l]);
+  return root;
+#endif
+}
+
+INLINE bool any(Mask m) {
+#if defined(FRACFARM_MASKS)
+  return m.raw != 0;
+#elif defined(__AVX2__)
+  return sizeof(Real) == 4 ? _mm256_movemask_ps(__m256(m.raw)) != 0 : _mm256_movemask_pd(__m256d(m.raw)) != 0;
+#else
+  bool found = false;
+  for (int l = 0; l < width; ++l) found |= m.raw[l] != 0;
+  return found;
+#endif
+}
+
+// Registers of consecutive numbers.
+INLINE Lanes load(const Real* from) {
+  Raw raw;
+  __builtin_memcpy(&raw, from, sizeof raw);
+  return raw;
+}
+INLINE void store(Real* to, Lanes a) { __builtin_memcpy(to, &a.raw, sizeof a.raw); }
+
+template <class Vector, class Pattern, std::size_t... L>
+INLINE Vector shuffle(Vector a, Vector b, Pattern, std::index_sequence<L...>) {
+  return __builtin_shufflevector(a, b, Pattern::of(int(L))...);
+}
+template <class Pattern>
+INLINE Raw shuffle(Raw a, Raw b) {
+  return shuffle(a, b, Pattern{}, std::make_index_sequence<std::size_t(width)>{});
+}
+
+// Patterns on groups of four lanes: lane 4 g + j of the result is lane 4 g + in(j) of a or b.
+template <int j0, int j1, int j2, int j3>
+struct InGroups {  // 0...3 of a, 4...7 of b
+  static constexpr int of(int l) {
+    const int j = l % 4, from = j == 0 ? j0 : j == 1 ? j1 : j == 2 ? j2 : j3;
+    return l - j + from % 4 + (from / 4) * width;
+  }
+};
+
+struct Four4 {
+  Raw a, b, c, d;
+};
+
+// Each group of four lanes as a 4 x 4 matrix, transposed.
+INLINE Four4 transposed(const Four4& z) {
+  if constexpr (sizeof(Real) == 4) {
+    using Low = InGroups<0, 4, 1, 5>;
+    using High = InGroups<2, 6, 3, 7>;
+    const Raw ab_low = shuffle<Low>(z.a, z.b), ab_high = shuffle<High>(z.a, z.b);
+    const Raw cd_low = shuffle<Low>(z.c, z.d), cd_high = shuffle<High>(z.c, z.d);
+    using First = InGroups<0, 1, 4, 5>;
+    using Second = InGroups<2, 3, 6, 7>;
+    return {shuffle<First>(ab_low, cd_low), shuffle<Second>(ab_low, cd_low), shuffle<First>(ab_high, cd_high),
+            shuffle<Second>(ab_high, cd_high)};
+  } else {
+    using Even = InGroups<0, 4, 2, 6>;
+    using Odd = InGroups<1, 5, 3, 7>;
+    const Raw ab_even = shuffle<Even>(z.a, z.b), ab_odd = shuffle<Odd>(z.a, z.b);
+    const Raw cd_even = shuffle<Even>(z.c, z.d), cd_odd = shuffle<Odd>(z.c, z.d);
+    using First = InGroups<0, 1, 4, 5>;
+    using Second = InGroups<2, 3, 6, 7>;
+    return {shuffle<First>(ab_even, cd_even), shuffle<First>(ab_odd, cd_odd), shuffle<Second>(ab_even, cd_even),
+            shuffle<Second>(ab_odd, cd_odd)};
+  }
+}
+
+INLINE Four four(const Real* from) {
+  Four raw;
+  __builtin_memcpy(&raw, from, sizeof raw);
+  return raw;
+}
+INLINE void keep_four(Real* to, Four a) { __builtin_memcpy(to, &a, sizeof a); }
+
+// Four numbers at each of at(first), at(first + 4), ... side by side in a register.
+template <int groups>
+struct Wide;
+template <>
+struct Wide<1> {
+  using type = Four;
+};
+template <>
+struct Wide<2> {
+  using type = Eight;
+};
+template <>
+struct Wide<4> {
+  typedef Real type __attribute__((vector_size(16 * sizeof(Real))));
+};
+
+template <int groups, class At, class All = typename Wide<groups>::type>
+struct Quads;
+template <class At, class All>
+struct Quads<1, At, All> {
+  static INLINE All get(const At& at, int first) { return four(at(first)); }
+  static INLINE void put(const At& at, int first, All a) { keep_four(at(first), a); }
+};
+template <class At, class All>
+struct Quads<2, At, All> {
+  static INLINE All get(const At& at, int first) {
+    return __builtin_shufflevector(four(at(first)), four(at(first + 4)), 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  static INLINE void put(const At& at, int first, All a) {
+    keep_four(at(first), __builtin_shufflevector(a, a, 0, 1, 2, 3));
+    keep_four(at(first + 4), __builtin_shufflevector(a, a, 4, 5, 6, 7));
+  }
+};
+template <class At, class All>
+struct Quads<4, At, All> {
+  static INLINE All get(const At& at, int first) {
+    const Eight low = __builtin_shufflevector(four(at(first)), four(at(first + 4)), 0, 1, 2, 3, 4, 5, 6, 7);
+    const Eight high = __builtin_shufflevector(four(at(first + 8)), four(at(first + 12)), 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+  static INLINE void put(const At& at, int first, All a) {
+    keep_four(at(first), __builtin_shufflevector(a, a, 0, 1, 2, 3));
+    keep_four(at(first + 4), __builtin_shufflevector(a, a, 4, 5, 6, 7));
+    keep_four(at(first + 8), __builtin_shufflevector(a, a, 8, 9, 10, 11));
+    keep_four(at(first + 12), __builtin_shufflevector(a, a, 12, 13, 14, 15));
+  }
+};
+
+struct Lanes4 {
+  Lanes a, b, c, d;
+};
+
+// Four consecutive numbers at(l) of each lane l, as four registers, and back.
+template <class At>
+INLINE Lanes4 load_rows(const At& at) {
+  using Q = Quads<width / 4, At>;
+  const Four4 t = transposed({Q::get(at, 0), Q::get(at, 1), Q::get(at, 2), Q::get(at, 3)});
+  return {t.a, t.b, t.c, t.d};
+}
+template <class At>
+INLINE void store_rows(const At& at, const Lanes4& x) {
+  using Q = Quads<width / 4, At>;
+  const Four4 t = transposed({x.a.raw, x.b.raw, x.c.raw, x.d.raw});
+  Q::put(at, 0, t.a), Q::put(at, 1, t.b), Q::put(at, 2, t.c), Q::put(at, 3, t.d);
+}
+#define LANE_AT [=](int l) __attribute__((always_inline))
+
+// Partial sums of a chunk, one a lane of the block.
+struct LaneSums {
+  Lanes part[parts];
+  INLINE LaneSums() {
+    for (Lanes& lane : part) lane = Lanes(Real(0));
+  }
+  INLINE double total() const {
+    Real one[lanes];
+    for (int s = 0; s < parts; ++s) store(one + s * width, part[s]);
+    double eight[8], quarter[4];
+    for (int l = 0; l < 8; ++l) eight[l] = double(one[l]) + double(one[l + 8]);
+    for (int l = 0; l < 4; ++l) quarter[l] = eight[l] + eight[l + 4];
+    return (quarter[0] + quarter[2]) + (quarter[1] + quarter[3]);
+  }
+};
+
+}  // namespace fracfarm::fdem::FRACFARM_KERNELS

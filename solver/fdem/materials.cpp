@@ -1,0 +1,54 @@
+#include "solver/fdem/materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/law/compensated.hpp"
+
+namespace fracfarm::fdem {
+namespace {
+
+struct Mode {
+  double strength, toughness;
+};
+
+Mode weaker(Mode a, Mode b) { return {std::min(a.strength, b.strength), std::min(a.toughness, b.toughness)}; }
+
+}  // namespace
+
+double young_of(const Material& material) {
+  const Elasticity& C = material.elasticity;
+  return material.young ? *material.young : C.C33 - C.C13 * C.C13 / C.C11;
+}
+
+double penalty_of(const Material& material, const FdemSettings& settings) {
+  if (settings.tier == FdemTier::reference) return settings.penalty.value_or(100.0) * young_of(material) / settings.element_size;
+  return settings.penalty.value_or(10.0) * material.elasticity.C11 / settings.element_size;
+}
+
+Curve curve_of(const FdemSettings& settings) { return settings.softening == Softening::munjiza ? Curve::munjiza : Curve::linear; }
+
+law::Joint<double> joint_law(const Material& left, const Material& right, const FdemSettings& settings) {
+  const Cohesion &a = *left.cohesion, &b = *right.cohesion;
+  const Mode tension = weaker({a.tensile_strength, a.GI}, {b.tensile_strength, b.GI});
+  const Mode shear = weaker({a.shear_strength, a.GII}, {b.shear_strength, b.GII});
+  const double p = std::min(penalty_of(left, settings), penalty_of(right, settings));
+  const double area = curve_of(settings) == Curve::munjiza ? law::area_under<law::Munjiza>() : law::area_under<law::LinearSoftening>();
+  return {p, p / tension.strength, p / shear.strength, 1.0 / law::rupture_opening(p, tension.strength, tension.toughness, area),
+          1.0 / law::rupture_opening(p, shear.strength, shear.toughness, area)};
+}
+
+TriangleLaw<double> triangle_law(const Material& material, const FdemSettings& settings, double length_per_area) {
+  const Elasticity& e = material.elasticity;
+  law::Stiffness<double> C{e.C11, e.C13, e.C33, e.C55};
+  if (settings.tier != FdemTier::reference) C = law::compensated(C, length_per_area / (2.0 * penalty_of(material, settings)));
+  TriangleLaw<double> law{};
+  law.stiffness = C;
+  law.viscosity = settings.viscosity * 2.0 * settings.element_size * std::sqrt(young_of(material) * material.density);
+  law.per_mass = 3.0 / material.density;
+  law.plastic = material.plasticity.has_value();
+  if (law.plastic) law.j2 = {C.C13 + 2.0 / 3.0 * C.C55, C.C55, material.plasticity->yield, material.plasticity->hardening};
+  return law;
+}
+
+}  // namespace fracfarm::fdem

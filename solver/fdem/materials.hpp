@@ -1,0 +1,24 @@
+// Constants of triangles and joints from a material and the settings: penalty by tier, compensated stiffness, viscosity, openings at
+// rupture. One place for what the tiers mean.
+#pragma once
+
+#include "common/scene/scene.hpp"
+#include "solver/fdem/kernels.hpp"
+
+namespace fracfarm::fdem {
+
+// E of an isotropic material; C33 - C13^2 / C11 of others (Pa).
+double young_of(const Material& material);
+
+// p, Pa/m: 100 E / h in the reference tier, 10 C11 / h in the others, or the factor that the settings give.
+double penalty_of(const Material& material, const FdemSettings& settings);
+
+Curve curve_of(const FdemSettings& settings);
+
+// Joints between two materials have the weaker one's numbers, each for itself.
+law::Joint<double> joint_law(const Material& left, const Material& right, const FdemSettings& settings);
+
+// `length_per_area`: of joints, 1/m; what the fast tiers make up for.
+TriangleLaw<double> triangle_law(const Material& material, const FdemSettings& settings, double length_per_area);
+
+}  // namespace fracfarm::fdem

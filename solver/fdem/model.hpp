@@ -1,0 +1,88 @@
+// Model: the plan in a run's number type. State: exactly what a restart needs. Scratch: everything that follows from both.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "solver/fdem/plan.hpp"
+#include "solver/phasefield/grid.hpp"
+#include "solver/stage_clock.hpp"
+
+namespace fracfarm::fdem {
+
+using phasefield::Field;
+
+// One told degree of freedom.
+struct ToldDof {
+  std::size_t at;       // in the body's arrays
+  std::size_t at_told;  // in the told blocks' arrays
+  int motion;           // of Body::told
+  double mass;          // kg/m
+};
+
+// One pulled corner.
+struct PulledCorner {
+  int corner;  // 3 slot + k
+  int pull;    // of Body::pulls, -1: weight
+  double fx, fz;
+};
+
+template <class Real>
+struct Model {
+  Field<Real> shape, length, along;
+  std::vector<TriangleLaw<Real>> laws;
+  std::vector<law::Joint<Real>> joint_laws;
+  std::vector<int> told_of_block;
+  Field<Real> told;
+  std::vector<ToldDof> told_dofs;
+  std::vector<PulledCorner> pulled;
+  bool plastic = false;
+};
+
+// Sums over the body at the instant of the state, as far as the joints know them.
+struct Ledger {
+  double joints_stored = 0.0;  // J/m
+  double fracture = 0.0;       // J/m since t = 0, as all below
+  double viscous = 0.0;        // up to the kick before the last
+  double plastic = 0.0;
+  double external_work = 0.0;   // of whole steps; the last half is the sample's
+  double initial_energy = 0.0;  // before the boundary moved
+};
+
+template <class Real>
+struct State {
+  Field<Real> u, v;                        // [block][corner_count][lane]
+  Field<Real> slots;                       // forces of the joints at u, N/m
+  Field<Real> plastic;                     // [block][4][lane]
+  Field<Real> damage, opening;             // [block][2][lane], [block][4][lane]
+  std::vector<unsigned char> joint_state;  // by block
+  std::vector<double> break_time;          // by edge
+  std::vector<unsigned char> break_mode;
+  Field<Real> extra;  // rows of tractions, weight and contact at u, N/m
+  Ledger ledger;
+};
+
+enum class Stage { boundary, triangles, joints, contact };
+inline constexpr std::array<const char*, 4> stage_names{"boundary", "triangles", "joints", "contact"};
+
+template <class Real>
+struct Scratch {
+  Field<Real> rows;                       // of u
+  Field<Real> told_velocity, told_force;  // of the told blocks
+  std::vector<double> told_before;        // by told degree of freedom, m/s, half a step before
+  std::vector<unsigned char> needs;       // by triangle block
+  std::vector<int> extra_slots;           // whose rows of `extra` may be other than 0
+  StageClock<Stage, stage_names.size()> clock;
+};
+
+template <class Real>
+Model<Real> make_model(const Plan& plan, const Body& body);
+
+// At t = 0: displacements and velocities of the body, no damage but where the plan has pads.
+template <class Real>
+State<Real> make_state(const Plan& plan, const Model<Real>& model, const Body& body);
+
+template <class Real>
+Scratch<Real> make_scratch(const Plan& plan, const Model<Real>& model, const Body& body);
+
+}  // namespace fracfarm::fdem
