@@ -20,18 +20,18 @@ struct Point {
   double x, z;
 };
 
-Point corner(const std::vector<double>& corners, int t, int k) {
+Point corner(std::span<const double> corners, int t, int k) {
   const std::size_t at = 8 * static_cast<std::size_t>(t) + 2 * static_cast<std::size_t>(k);
   return {corners[at], corners[at + 1]};
 }
 
-double twice_area(const std::vector<double>& corners, int t) {
+double twice_area(std::span<const double> corners, int t) {
   const Point a = corner(corners, t, 0), b = corner(corners, t, 1), c = corner(corners, t, 2);
   return (b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x);
 }
 
 // Undeformed angle of triangle t at its corner k.
-double angle_at(const std::vector<double>& corners, int t, int k) {
+double angle_at(std::span<const double> corners, int t, int k) {
   const Point a = corner(corners, t, k), b = corner(corners, t, next_corner(k)), c = corner(corners, t, last_corner(k));
   const double cross = (b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x);
   const double dot = (b.x - a.x) * (c.x - a.x) + (b.z - a.z) * (c.z - a.z);

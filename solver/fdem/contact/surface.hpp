@@ -51,7 +51,7 @@ class Surface {
   void link(int from, int to, double angle);
   void link_around(int place);
 
-  const std::vector<double>& corners_;
+  std::span<const double> corners_;
   std::span<const TriangleSide> neighbour_;
   std::vector<TriangleSide> order_, pending_;
   std::vector<ExposedSide> sides_;

@@ -85,6 +85,7 @@ struct RigidScene {
   Triangles<Real> triangles;
   std::vector<RigidBody> bodies;
   double gravity_x = 0.0, gravity_z = 0.0;  // m/s^2
+  double settling = 0.0;                    // 1/s, damps v_z and turning, so that a block soon lies still on a level table
 
   // The triangles added since the last body; density in kg/m^3.
   RigidBody& finish_body(double density) {
@@ -147,6 +148,7 @@ struct RigidScene {
         fx += gx, fz += gz;
         moment += (triangles.x(t, k) - body.x0 - body.x) * gz - (triangles.z(t, k) - body.z0 - body.z) * gx;
       }
+    body.vz *= 1.0 - settling * dt, body.turning *= 1.0 - settling * dt;
     body.vx += dt * fx / body.mass, body.vz += dt * fz / body.mass, body.turning += dt * moment / body.inertia;
   }
 };
