@@ -6,14 +6,11 @@
 namespace fracfarm::fdem {
 namespace {
 
-template <class Real>
-EndVelocities ends(const ExposedSide& side, const Real* rows) {
-  const Real* v = rows + side.row;
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]), static_cast<double>(v[3])};
-}
+// Motion gives a distance but for rounding.
+constexpr double slack = 1.001;
 
 template <class Real>
-void add_to_ends(const ExposedSide& side, const EndVelocities& f, Real* force) {
+void add_to_ends(const ExposedSide& side, const Ends& f, Real* force) {
   Real *start = force + side.force_start, *end = force + side.force_end;
   start[0] += static_cast<Real>(f.ax), start[1] += static_cast<Real>(f.az);
   end[0] += static_cast<Real>(f.bx), end[1] += static_cast<Real>(f.bz);
@@ -32,24 +29,24 @@ Contact<Real>::Contact(const CornerRows& corners, std::span<const TriangleSide> 
 }
 
 template <class Real>
-void Contact<Real>::add_forces(const Motion8<Real>& motion, double dt, Real* force) {
+void Contact<Real>::add_forces(const Real* displacement, Real* force) {
   if (!any()) return;
   fresh_ = surface_.committed();
   surface_.commit();
-  near_.follow(surface_, motion.displacement);
+  near_.follow(surface_, displacement);
   last_.swap(touches_);
   find_touches();
   energies_.stored = 0.0;
   cursor_ = 0;
   for (std::size_t n = 0; n < touches_.size(); ++n) {
     Touch& touch = touches_[n];
-    const RelativeVelocity v = velocity_of(touch, places_[n], motion.velocity);
-    remember(touch, places_[n].depth, 2.0 * std::hypot(v.along, v.into) * dt);
-    energies_.friction += slide(touch, friction_, v.along * dt);
+    const RelativeMotion moved = motion_of(touch, places_[n]);
+    remember(touch, places_[n].depth, slack * moved.length());
+    energies_.friction += slide(touch, friction_, moved.along);
     energies_.stored += touch.stored();
     push(touch, places_[n], force);
   }
-  let_go(motion, dt);
+  let_go();
 }
 
 // Every point of the near pairs that is below the side of its pair, and in no other side's part of the boundary.
@@ -57,7 +54,7 @@ template <class Real>
 void Contact<Real>::find_touches() {
   touches_.clear();
   places_.clear();
-  const std::span<const SideNow> now = near_.now();
+  const std::vector<SideNow>& now = near_.now();
   for (const SidePair& pair : near_.pairs()) {
     const std::size_t u = static_cast<std::size_t>(pair.target), v = static_cast<std::size_t>(pair.side);
     const ExposedSide &target = surface_.sides()[u], &side = surface_.sides()[v];
@@ -107,10 +104,9 @@ Touch* Contact<Real>::last_touch(const Touch& touch) {
 }
 
 template <class Real>
-RelativeVelocity Contact<Real>::velocity_of(const Touch& touch, const TouchPlace& at, const Real* velocity) const {
-  const std::vector<ExposedSide>& sides = surface_.sides();
-  return relative_velocity(at, point_of(touch), ends(sides[static_cast<std::size_t>(touch.target)], velocity),
-                           ends(sides[static_cast<std::size_t>(touch.side)], velocity));
+RelativeMotion Contact<Real>::motion_of(const Touch& touch, const TouchPlace& at) const {
+  const std::size_t u = static_cast<std::size_t>(touch.target), v = static_cast<std::size_t>(touch.side);
+  return relative_motion(at, point_of(touch), difference(near_.now()[u], near_.before()[u]), difference(near_.now()[v], near_.before()[v]));
 }
 
 // Overlap and origin of the depth now: what motion over `reach` cannot have brought is no overlap.
@@ -138,23 +134,22 @@ void Contact<Real>::push(const Touch& touch, const TouchPlace& at, Real* force) 
 
 // Touches that ended: their springs are heat, and an overlap larger than motion can have ended left without work.
 template <class Real>
-void Contact<Real>::let_go(const Motion8<Real>& motion, double dt) {
+void Contact<Real>::let_go() {
   for (const Touch& touch : last_) {
     if (touch.carried_on) continue;
     energies_.friction += 0.5 * touch.stiffness * touch.slip * touch.slip;
     const std::size_t u = static_cast<std::size_t>(touch.target), v = static_cast<std::size_t>(touch.side);
     const Axes a = axes(near_.now()[v]);
     const Place place = place_of(point_on(near_.now()[u], point_of(touch)), near_.now()[v], a);
-    const RelativeVelocity moved = velocity_of(touch, {place.depth, place.along / a.length, a}, motion.velocity);
-    if (touch.overlap > 2.0 * std::hypot(moved.along, moved.into) * dt)
-      energies_.jumped -= 0.5 * touch.stiffness * touch.overlap * touch.overlap;
+    const RelativeMotion moved = motion_of(touch, {place.depth, place.along / a.length, a});
+    if (touch.overlap > slack * moved.length()) energies_.jumped -= 0.5 * touch.stiffness * touch.overlap * touch.overlap;
   }
 }
 
 template <class Real>
 void Contact<Real>::save(ArchiveWriter& archive) const {
   archive.put_array(surface_.order());
-  archive.put(static_cast<std::uint64_t>(surface_.committed()));
+  archive.put_array(near_.now());  // of the sides that have been in a step
   archive.put(static_cast<std::uint64_t>(touches_.size()));
   for (const Touch& t : touches_) {
     for (const int value : {t.target, t.side, t.point}) archive.put(value);
@@ -167,9 +162,12 @@ template <class Real>
 void Contact<Real>::load(ArchiveReader& archive) {
   std::vector<TriangleSide> order;
   archive.get_array(order);
-  const std::uint64_t committed = archive.get<std::uint64_t>(), touches = archive.get<std::uint64_t>();
+  std::vector<SideNow> now;
+  archive.get_array(now);
+  const std::size_t committed = now.size();
+  const std::uint64_t touches = archive.get<std::uint64_t>();
   surface_.clear();
-  near_.forget();
+  near_.resume(std::move(now));
   touches_.clear();
   if (committed > order.size() || !surface_.knows(order)) return archive.reject();
   for (std::size_t n = 0; n < order.size(); ++n) {

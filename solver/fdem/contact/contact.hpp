@@ -34,13 +34,6 @@ struct ContactSettings {
 // + 1.
 using CornerRows = std::vector<double>;
 
-// The triangles in motion: rows of 8 as CornerRows.
-template <class Real>
-struct Motion8 {
-  const Real* displacement = nullptr;  // m
-  const Real* velocity = nullptr;      // m/s, with which the displacement of the last step became this one
-};
-
 struct ContactEnergies {
   double stored = 0.0;    // J/m, in overlaps and friction springs now
   double friction = 0.0;  // J/m, dissipated since the start, never falls
@@ -57,9 +50,9 @@ class Contact {
   void expose(TriangleSide side) { surface_.expose(side); }
   bool any() const { return !surface_.order().empty(); }
 
-  // Adds contact forces (N/m) to rows of 8 of the triangles, the last two unused, and books energies over dt. Ordered sums: the same bits
-  // for any number of threads.
-  void add_forces(const Motion8<Real>& motion, double dt, Real* force);
+  // One step: `displacement` and `force` are rows of 8 of the triangles, m and N/m; contact forces are added to columns 0 to 5. Books
+  // energies. Ordered sums: the same bits for any number of threads. The motion since the last call is the step: call it once each.
+  void add_forces(const Real* displacement, Real* force);
 
   const ContactEnergies& energies() const { return energies_; }
   void save(ArchiveWriter& archive) const;
@@ -74,10 +67,10 @@ class Contact {
   void find_touches();
   bool belongs_to(const PlanePoint& p, const Place& place, const ExposedSide& side, const Axes& axes) const;
   Touch* last_touch(const Touch& touch);
-  RelativeVelocity velocity_of(const Touch& touch, const TouchPlace& at, const Real* velocity) const;
+  RelativeMotion motion_of(const Touch& touch, const TouchPlace& at) const;
   void remember(Touch& touch, double depth, double reach);
   void push(const Touch& touch, const TouchPlace& at, Real* force) const;
-  void let_go(const Motion8<Real>& motion, double dt);
+  void let_go();
 
   double friction_;
   Surface surface_;

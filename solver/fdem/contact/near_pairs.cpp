@@ -42,8 +42,11 @@ double NearPairs::moved_since(const std::vector<SideNow>& then) const {
 template <class Real>
 void NearPairs::follow(const Surface& surface, const Real* displacement) {
   const std::vector<ExposedSide>& sides = surface.sides();
+  before_.swap(now_);
   now_.resize(sides.size());
+  const std::size_t placed = before_.size();
   const double moved = move(sides, displacement);
+  before_.insert(before_.end(), now_.begin() + static_cast<std::ptrdiff_t>(placed), now_.end());
   if (known_ == 0) {
     search({sides, now_, far_margin_});
   } else if (!within(moved, near_margin_)) {

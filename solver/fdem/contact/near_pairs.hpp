@@ -14,16 +14,17 @@ class NearPairs {
  public:
   explicit NearPairs(double mean_length) : far_margin_(0.1 * mean_length), near_margin_(0.02 * mean_length) {}
 
-  // Takes the sides to where they are (rows of 8, m) and sees to the lists.
+  // Takes the sides to where they are (rows of 8, m) and sees to the lists. A side that is new has not moved.
   template <class Real>
   void follow(const Surface& surface, const Real* displacement);
-  // Both lists are made anew at the next follow().
-  void forget() { known_ = 0; }
+  // As if the sides had last been there: both lists are made anew at the next follow().
+  void resume(std::vector<SideNow> last) { known_ = 0, now_ = std::move(last); }
 
-  std::span<const SideNow> now() const { return now_; }
-  std::span<const SidePair> pairs() const { return near_; }  // sorted
-  long searches() const { return searches_; }                // by cells, since the start
-  long selections() const { return selections_; }            // of near pairs from far ones
+  const std::vector<SideNow>& now() const { return now_; }
+  const std::vector<SideNow>& before() const { return before_; }  // one follow() ago
+  std::span<const SidePair> pairs() const { return near_; }       // sorted
+  long searches() const { return searches_; }                     // by cells, since the start
+  long selections() const { return selections_; }                 // of near pairs from far ones
 
  private:
   template <class Real>
@@ -33,9 +34,10 @@ class NearPairs {
   void select(const SearchScene& scene);
   void admit(const SearchScene& scene);
 
-  double far_margin_, near_margin_;              // m
-  std::size_t known_ = 0;                        // sides in the lists
-  std::vector<SideNow> now_, at_far_, at_near_;  // the latter two: where they were when the lists were made
+  double far_margin_, near_margin_;  // m
+  std::size_t known_ = 0;            // sides in the lists
+  std::vector<SideNow> now_, before_;
+  std::vector<SideNow> at_far_, at_near_;  // where the sides were when the lists were made
   std::vector<SidePair> far_, near_;
   CellSearch cells_;
   long searches_ = 0, selections_ = 0;

@@ -26,17 +26,23 @@ struct TouchPlace {
   Axes axes;
 };
 
-struct EndVelocities {
+// A vector at each end of a side: displacements, or forces.
+struct Ends {
   double ax, az, bx, bz;
 };
 
-// Velocity of the point against the material of the other body at the same place: along the side and into it. The other body turns as its
-// side does: its velocity at the point is that of the foot of the point, and the side's rate of turn times the depth.
-struct RelativeVelocity {
+inline Ends difference(const SideNow& now, const SideNow& then) {
+  return {now.ax - then.ax, now.az - then.az, now.bx - then.bx, now.bz - then.bz};
+}
+
+// Motion of the point against the material of the other body at the same place, m: along the side and into it. The other body turns as its
+// side does: it moves at the point as at the point's foot on the side, and by the side's turn times the depth.
+struct RelativeMotion {
   double along, into;
+  double length() const { return std::hypot(along, into); }
 };
 
-inline RelativeVelocity relative_velocity(const TouchPlace& at, double place, const EndVelocities& target, const EndVelocities& side) {
+inline RelativeMotion relative_motion(const TouchPlace& at, double place, const Ends& target, const Ends& side) {
   const double tx = at.axes.tx, tz = at.axes.tz, share = at.share;
   const double x = target.ax + place * (target.bx - target.ax) - side.ax - share * (side.bx - side.ax);
   const double z = target.az + place * (target.bz - target.az) - side.az - share * (side.bz - side.az);
@@ -57,7 +63,7 @@ inline double slide(Touch& touch, double friction, double moved) {
 
 // Forces on the ends of target and side, N/m.
 struct EndForces {
-  EndVelocities target, side;
+  Ends target, side;
 };
 
 // -dU/du for the normal part; the tangential part acts at the point on both bodies: on the side's ends through its foot and a couple.

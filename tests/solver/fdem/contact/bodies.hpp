@@ -16,7 +16,7 @@ template <class Real>
 struct Triangles {
   CornerRows corners;
   std::vector<TriangleSide> neighbour;
-  std::vector<Real> displacement, velocity, force;
+  std::vector<Real> displacement, force;
 
   int count() const { return static_cast<int>(corners.size() / 8); }
   // Corners as x z pairs, counter-clockwise. `body` tells apart bodies that share points.
@@ -32,9 +32,8 @@ struct Triangles {
       neighbour[static_cast<std::size_t>(side)] = other->second;
       neighbour[static_cast<std::size_t>(other->second)] = side;
     }
-    for (std::vector<Real>* rows : {&displacement, &velocity, &force}) rows->resize(corners.size(), Real(0));
+    for (std::vector<Real>* rows : {&displacement, &force}) rows->resize(corners.size(), Real(0));
   }
-  Motion8<Real> motion() const { return {displacement.data(), velocity.data()}; }
   double x(int t, int k) const { return corners[at(t, k)] + static_cast<double>(displacement[at(t, k)]); }
   double z(int t, int k) const { return corners[at(t, k) + 1] + static_cast<double>(displacement[at(t, k) + 1]); }
   static std::size_t at(int t, int k) { return 8 * static_cast<std::size_t>(t) + 2 * static_cast<std::size_t>(k); }
@@ -111,29 +110,24 @@ struct RigidScene {
     for (const RigidBody& body : bodies) sum += body.fixed ? 0.0 : body.kinetic();
     return sum;
   }
-  // Displacement rows of where the bodies are, and as velocity what brought them there in dt.
-  void place(double dt) {
+  // Displacement rows of where the bodies are.
+  void place() {
     for (const RigidBody& body : bodies)
       for (int t = body.first; t < body.first + body.count; ++t)
         for (int k = 0; k < 4; ++k) {
           const std::size_t n = Triangles<Real>::at(t, k);
           const double rx = triangles.corners[n] - body.x0, rz = triangles.corners[n + 1] - body.z0;
           const double c = std::cos(body.angle) - 1.0, s = std::sin(body.angle);
-          const Real ux = static_cast<Real>(body.x + c * rx - s * rz), uz = static_cast<Real>(body.z + s * rx + c * rz);
-          if (dt > 0.0) {
-            triangles.velocity[n] = static_cast<Real>((static_cast<double>(ux) - static_cast<double>(triangles.displacement[n])) / dt);
-            triangles.velocity[n + 1] =
-                static_cast<Real>((static_cast<double>(uz) - static_cast<double>(triangles.displacement[n + 1])) / dt);
-          }
-          triangles.displacement[n] = ux, triangles.displacement[n + 1] = uz;
+          triangles.displacement[n] = static_cast<Real>(body.x + c * rx - s * rz);
+          triangles.displacement[n + 1] = static_cast<Real>(body.z + s * rx + c * rz);
         }
   }
   // Drift, contact, kick.
   void step(Contact<Real>& contact, double dt) {
     for (RigidBody& body : bodies) body.x += dt * body.vx, body.z += dt * body.vz, body.angle += dt * body.turning;
-    place(dt);
+    place();
     std::fill(triangles.force.begin(), triangles.force.end(), Real(0));
-    contact.add_forces(triangles.motion(), dt, triangles.force.data());
+    contact.add_forces(triangles.displacement.data(), triangles.force.data());
     for (RigidBody& body : bodies)
       if (!body.fixed) kick(body, dt);
   }

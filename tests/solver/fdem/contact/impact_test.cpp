@@ -55,9 +55,9 @@ struct Impact {
 };
 
 Impact impact(RigidScene<double> scene, double friction, double dt) {
-  Contact<double> contact(scene.triangles.corners, scene.triangles.neighbour, {young, friction});
+  Contact<double> contact(scene.triangles.corners, scene.triangles.neighbour, {young, friction, {}});
   scene.triangles.expose_boundary(contact);
-  scene.place(0.0);
+  scene.place();
   Impact result;
   result.before = scene.kinetic();
   const double speed = std::hypot(scene.bodies[1].vx, scene.bodies[1].vz);

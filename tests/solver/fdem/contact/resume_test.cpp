@@ -29,7 +29,7 @@ struct Tumble {
     }
     for (std::size_t s = 0; s < scene.triangles.neighbour.size(); ++s)
       if (scene.triangles.neighbour[s] > static_cast<int>(s)) inner.push_back(static_cast<int>(s));
-    scene.place(0.0);
+    scene.place();
   }
   void step(Contact<Real>& contact, int n) {
     if (n == 0) scene.triangles.expose_boundary(contact);
