@@ -109,6 +109,13 @@ RelativeMotion Contact<Real>::motion_of(const Touch& touch, const TouchPlace& at
   return relative_motion(at, point_of(touch), difference(near_.now()[u], near_.before()[u]), difference(near_.now()[v], near_.before()[v]));
 }
 
+// Between the faces of an edge whose joint broke in the last step?
+template <class Real>
+bool Contact<Real>::just_broke(const Touch& touch) const {
+  const std::size_t later = static_cast<std::size_t>(std::max(touch.target, touch.side));
+  return later >= fresh_ && surface_.sides()[later].was_joined && surface_.opposite(touch.target) == touch.side;
+}
+
 // Overlap and origin of the depth now: what motion over `reach` cannot have brought is no overlap.
 template <class Real>
 void Contact<Real>::remember(Touch& touch, double depth, double reach) {
@@ -117,7 +124,7 @@ void Contact<Real>::remember(Touch& touch, double depth, double reach) {
     last->carried_on = true;
     touch.slip = last->slip;
     touch.origin = last->side == touch.side ? std::min(last->origin, depth) : std::max(0.0, depth - last->overlap - reach);
-  } else if (surface_.opposite(touch.target) == touch.side && static_cast<std::size_t>(std::max(touch.target, touch.side)) >= fresh_) {
+  } else if (just_broke(touch)) {
     energies_.jumped += 0.5 * touch.stiffness * depth * depth;
   } else {
     touch.origin = std::max(0.0, depth - reach);
@@ -160,7 +167,7 @@ void Contact<Real>::save(ArchiveWriter& archive) const {
 
 template <class Real>
 void Contact<Real>::load(ArchiveReader& archive) {
-  std::vector<TriangleSide> order;
+  std::vector<Exposure> order;
   archive.get_array(order);
   std::vector<SideNow> now;
   archive.get_array(now);

@@ -46,8 +46,11 @@ class Contact {
   // `neighbour[3 t + k]`: the side across edge k, or -1 on the boundary. All arrays stay with the caller and outlive this.
   Contact(const CornerRows& corners, std::span<const TriangleSide> neighbour, ContactSettings settings);
 
-  // Both sides of a broken edge (or one side of the boundary) can be touched from now on.
-  void expose(TriangleSide side) { surface_.expose(side); }
+  // A side can be touched from now on; of an edge between two triangles expose both. An overlap with the side across that is there already
+  // goes on pressing with the stiffness of contact where a joint pressed until now (an edge that breaks), and is forgotten where nothing
+  // did
+  // (`was_joined` false: a crack from the start).
+  void expose(TriangleSide side, bool was_joined = true) { surface_.expose({side, was_joined}); }
   bool any() const { return !surface_.order().empty(); }
 
   // One step: `displacement` and `force` are rows of 8 of the triangles, m and N/m; contact forces are added to columns 0 to 5. Books
@@ -68,6 +71,7 @@ class Contact {
   bool belongs_to(const PlanePoint& p, const Place& place, const ExposedSide& side, const Axes& axes) const;
   Touch* last_touch(const Touch& touch);
   RelativeMotion motion_of(const Touch& touch, const TouchPlace& at) const;
+  bool just_broke(const Touch& touch) const;
   void remember(Touch& touch, double depth, double reach);
   void push(const Touch& touch, const TouchPlace& at, Real* force) const;
   void let_go();

@@ -45,17 +45,22 @@ Surface::Surface(const std::vector<double>& corners, std::span<const TriangleSid
   assert(corners.size() / 8 * 3 == neighbour.size());
   const int triangles = static_cast<int>(corners.size() / 8);
   double area = 0.0;
-  for (int t = 0; t < triangles; ++t) area += 0.5 * twice_area(corners, t);
-  if (triangles > 0) mean_length_ = std::sqrt(4.0 / std::numbers::sqrt3 * area / triangles);
+  int real = 0;
+  for (int t = 0; t < triangles; ++t) {
+    const double own = 0.5 * twice_area(corners, t);
+    area += own, real += own > 0.0;
+  }
+  if (real > 0) mean_length_ = std::sqrt(4.0 / std::numbers::sqrt3 * area / real);
 }
 
-void Surface::expose(TriangleSide side) {
+void Surface::expose(const Exposure& exposure) {
+  const TriangleSide side = exposure.side;
   assert(side >= 0 && static_cast<std::size_t>(side) < place_.size());
   int& place = place_[static_cast<std::size_t>(side)];
   if (place != unknown) return;
   place = waiting;
-  pending_.push_back(side);
-  order_.push_back(side);
+  pending_.push_back(exposure);
+  order_.push_back(exposure);
 }
 
 void Surface::clear() {
@@ -63,17 +68,19 @@ void Surface::clear() {
   std::fill(place_.begin(), place_.end(), unknown);
 }
 
-bool Surface::knows(std::span<const TriangleSide> sides) const {
-  return std::all_of(sides.begin(), sides.end(), [&](TriangleSide s) { return s >= 0 && static_cast<std::size_t>(s) < place_.size(); });
+bool Surface::knows(std::span<const Exposure> exposures) const {
+  return std::all_of(exposures.begin(), exposures.end(),
+                     [&](const Exposure& e) { return e.side >= 0 && static_cast<std::size_t>(e.side) < place_.size(); });
 }
 
 void Surface::commit() {
   const std::size_t first = sides_.size();
-  for (const TriangleSide id : pending_) {
+  for (const Exposure& exposure : pending_) {
+    const TriangleSide id = exposure.side;
     const int t = id / 3, k = id % 3;
     const Point a = corner(corners_, t, k), b = corner(corners_, t, next_corner(k));
     ExposedSide side;
-    side.id = id, side.triangle = t;
+    side.id = id, side.triangle = t, side.was_joined = exposure.was_joined != 0;
     side.row = 8 * t + 2 * k;
     side.force_start = side.row, side.force_end = 8 * t + 2 * next_corner(k);
     side.x0 = a.x, side.z0 = a.z, side.x1 = b.x, side.z1 = b.z;

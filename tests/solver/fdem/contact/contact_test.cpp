@@ -149,11 +149,17 @@ TEST_CASE("Sides of one body do not push each other, neither at its corners nor 
   CHECK(largest(force) == 0.0);
 }
 
-TEST_CASE("An edge that breaks while pressed together keeps its overlap, and the energy is booked as a jump") {
+// Two triangles over a horizontal edge, the upper pressed 1 um into the lower.
+Triangles<double> pressed_edge() {
   Triangles<double> triangles;
   triangles.add({{{0.0, 0.0}, {h, 0.0}, {0.5 * h, 0.9 * h}}}, 0);
   triangles.add({{{h, 0.0}, {0.0, 0.0}, {0.5 * h, -0.9 * h}}}, 0);
   for (int k = 0; k < 3; ++k) triangles.move(0, k, 0.0, -1e-6);
+  return triangles;
+}
+
+TEST_CASE("An edge that breaks while pressed together keeps its overlap, and the energy is booked as a jump") {
+  const Triangles<double> triangles = pressed_edge();
   Contact<double> contact(triangles.corners, triangles.neighbour, {young, 0.0, {}});
   contact.expose(0);
   contact.expose(triangles.neighbour[0]);
@@ -163,6 +169,28 @@ TEST_CASE("An edge that breaks while pressed together keeps its overlap, and the
   CHECK(force[1] + force[3] == Approx(2.0 * stiffness * h * 1e-6).epsilon(1e-6));
   CHECK(contact.energies().jumped == Approx(stiffness * h * 1e-12).epsilon(1e-6));
   CHECK(contact.energies().stored == contact.energies().jumped);
+}
+
+TEST_CASE("A crack that is exposed while its faces overlap forgets the overlap") {
+  Triangles<double> triangles = pressed_edge();
+  Contact<double> contact(triangles.corners, triangles.neighbour, {young, 0.0, {}});
+  contact.expose(0, false);
+  contact.expose(triangles.neighbour[0], false);
+  std::vector<double> force(triangles.corners.size(), 0.0);
+  contact.add_forces(triangles.displacement.data(), force.data());
+  CHECK(largest(force) == 0.0);
+  for (int k = 0; k < 3; ++k) triangles.move(0, k, 0.0, -1e-6);
+  contact.add_forces(triangles.displacement.data(), force.data());
+  CHECK(force[1] + force[3] == Approx(2.0 * young / contact.surface().mean_length() * h * 1e-6).epsilon(1e-6));
+  CHECK(contact.energies().jumped == 0.0);
+}
+
+TEST_CASE("Rows that are pads change nothing") {
+  Triangles<double> triangles = pressed_edge();
+  const double length = Surface(triangles.corners, triangles.neighbour).mean_length();
+  triangles.corners.resize(triangles.corners.size() + 16, 0.0);
+  triangles.neighbour.resize(triangles.neighbour.size() + 6, -1);
+  CHECK(Surface(triangles.corners, triangles.neighbour).mean_length() == length);
 }
 
 TEST_CASE("A side that is exposed while something else already lies inside pushes nothing until that has left and come back") {

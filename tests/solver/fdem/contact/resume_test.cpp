@@ -92,7 +92,7 @@ TEST_CASE("A damaged archive is refused") {
     other.load(reader);
     CHECK_FALSE(reader.finished());
   }
-  for (const std::size_t at : {std::size_t{8}, std::size_t{12}}) {  // sides that do not exist
+  for (const std::size_t at : {std::size_t{8}, std::size_t{16}}) {  // sides that do not exist
     std::string broken = bytes;
     broken[at + 3] = '\x7f';
     Contact<double> other(tumble.scene.triangles.corners, tumble.scene.triangles.neighbour, settings);

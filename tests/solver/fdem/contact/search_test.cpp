@@ -31,7 +31,7 @@ struct Debris {
   }
   Surface surface() const {
     Surface all(triangles.corners, triangles.neighbour);
-    for (std::size_t s = 0; s < triangles.neighbour.size(); ++s) all.expose(static_cast<int>(s));
+    for (std::size_t s = 0; s < triangles.neighbour.size(); ++s) all.expose({static_cast<int>(s), 0});
     all.commit();
     return all;
   }
@@ -114,7 +114,7 @@ TEST_CASE("Everything exposed and everything in one place stay within bounds of 
   Triangles<double> triangles;
   add_block(triangles, 0, {0.0, 0.0}, {40 * h, 40 * h}, {40, 40});
   Surface surface(triangles.corners, triangles.neighbour);
-  for (std::size_t s = 0; s < triangles.neighbour.size(); ++s) surface.expose(static_cast<int>(s));
+  for (std::size_t s = 0; s < triangles.neighbour.size(); ++s) surface.expose({static_cast<int>(s), 0});
   surface.commit();
   NearPairs near(surface.mean_length());
   near.follow(surface, triangles.displacement.data());

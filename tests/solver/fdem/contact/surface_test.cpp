@@ -25,8 +25,8 @@ int side_from(const Triangles<double>& triangles, std::array<double, 2> a, std::
 }
 
 void expose_edge(const Triangles<double>& triangles, Surface& surface, std::array<double, 2> a, std::array<double, 2> b) {
-  surface.expose(side_from(triangles, a, b));
-  surface.expose(side_from(triangles, b, a));
+  surface.expose({side_from(triangles, a, b), 1});
+  surface.expose({side_from(triangles, b, a), 1});
 }
 
 const ExposedSide& at(const Triangles<double>& triangles, const Surface& surface, std::array<double, 2> a, std::array<double, 2> b) {
@@ -42,7 +42,7 @@ TEST_CASE("The sides of a block's boundary go round it once") {
   add_block(triangles, 0, {0.0, 0.0}, {4 * h, 3 * h}, {4, 3});
   Surface surface(triangles.corners, triangles.neighbour);
   for (std::size_t s = 0; s < triangles.neighbour.size(); ++s)
-    if (triangles.neighbour[s] < 0) surface.expose(static_cast<int>(s));
+    if (triangles.neighbour[s] < 0) surface.expose({static_cast<int>(s), 0});
   CHECK(surface.sides().empty());
   surface.commit();
   int place = 0, seen = 0;
