@@ -56,7 +56,7 @@ void look_at(int id, const fdem::MeshChoice& choice, Findings& found) {
   if (!made) return void(found.refused.emplace_back(id, made.error()));
   fdem::MeshReport again;
   if (std::string why = fdem::gate(made->mesh, choice, again); !why.empty()) found.bad.emplace_back(id, std::move(why));
-  if (std::string why = fdem::uncovered_crack(made->mesh, choice, crack_reach * choice.element_size); !why.empty())
+  if (std::string why = fdem::strayed_crack(made->mesh, choice, crack_reach * choice.element_size); !why.empty())
     found.bad.emplace_back(id, std::move(why));
   found.triangles.push_back(static_cast<double>(made->mesh.triangles.size()));
   found.edges.push_back(static_cast<double>(made->mesh.edge_nodes.size()));

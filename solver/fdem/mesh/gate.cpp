@@ -61,6 +61,43 @@ std::vector<Segment> crack_edges_of(const TriangleMesh& mesh, const MeshChoice& 
   return edges;
 }
 
+// Samples each crack four times an element. The edge of the last sample is asked first, then those after it: edges of a crack mostly follow
+// each other.
+std::string uncovered_crack(const TriangleMesh& mesh, const MeshChoice& choice, double reach) {
+  const std::vector<Segment> edges = crack_edges_of(mesh, choice);
+  std::size_t last_hit = 0;
+  const auto covered = [&](Vec p) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const std::size_t e = (last_hit + i) % edges.size();
+      if (distance_to(p, first(edges[e]), last(edges[e])) >= reach) continue;
+      last_hit = e;
+      return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < choice.cracks.size(); ++i) {
+    Segment crack = choice.cracks[i];
+    if (!clip(crack, choice.width, choice.height)) continue;
+    const int samples = static_cast<int>(std::ceil(4 * length(crack) / choice.element_size)) + 1;
+    for (int k = 0; k <= samples; ++k)
+      if (const Vec p = along(first(crack), last(crack), static_cast<double>(k) / samples); !covered(p))
+        return fmt::format("crack {} has no edge of the mesh along it at ({:.6g}, {:.6g}) m, within {:.3g} mm", i, p.x, p.z, 1e3 * reach);
+  }
+  return {};
+}
+
+std::string invented_crack(const TriangleMesh& mesh, const MeshChoice& choice, double reach) {
+  for (std::size_t e = 0; e < mesh.edge_nodes.size(); ++e) {
+    if (mesh.edge_kind[e] != EdgeKind::crack) continue;
+    const Vec middle = along(node(mesh, mesh.edge_nodes[e][0]), node(mesh, mesh.edge_nodes[e][1]), 0.5);
+    const auto near = [&](const Segment& crack) { return distance_to(middle, first(crack), last(crack)) < reach; };
+    if (std::none_of(choice.cracks.begin(), choice.cracks.end(), near))
+      return fmt::format("an edge of the mesh at ({:.6g}, {:.6g}) m is a crack, with no crack of the scene within {:.3g} mm", middle.x,
+                         middle.z, 1e3 * reach);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string gate(const TriangleMesh& mesh, const MeshChoice& choice, MeshReport& report) {
@@ -84,21 +121,9 @@ std::string gate(const TriangleMesh& mesh, const MeshChoice& choice, MeshReport&
   return {};
 }
 
-// Samples each crack four times an element and looks for a crack edge within reach.
-std::string uncovered_crack(const TriangleMesh& mesh, const MeshChoice& choice, double reach) {
-  const std::vector<Segment> edges = crack_edges_of(mesh, choice);
-  for (std::size_t i = 0; i < choice.cracks.size(); ++i) {
-    Segment crack = choice.cracks[i];
-    if (!clip(crack, choice.width, choice.height)) continue;
-    const int samples = static_cast<int>(std::ceil(4 * length(crack) / choice.element_size)) + 1;
-    for (int k = 0; k <= samples; ++k) {
-      const Vec p = along(first(crack), last(crack), static_cast<double>(k) / samples);
-      const auto near = [&](const Segment& edge) { return distance_to(p, first(edge), last(edge)) < reach; };
-      if (std::none_of(edges.begin(), edges.end(), near))
-        return fmt::format("crack {} has no edge of the mesh along it at ({:.6g}, {:.6g}) m, within {:.3g} mm", i, p.x, p.z, 1e3 * reach);
-    }
-  }
-  return {};
+std::string strayed_crack(const TriangleMesh& mesh, const MeshChoice& choice, double reach) {
+  std::string reason = uncovered_crack(mesh, choice, reach);
+  return reason.empty() ? invented_crack(mesh, choice, reach) : reason;
 }
 
 }  // namespace fracfarm::fdem

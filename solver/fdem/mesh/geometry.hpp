@@ -25,8 +25,11 @@ inline Vec first(const Segment& s) { return {s.x0, s.z0}; }
 inline Vec last(const Segment& s) { return {s.x1, s.z1}; }
 inline double length(const Segment& s) { return distance(first(s), last(s)); }
 
-// Share of the way from a to b where p's foot lies, not cut to 0 ... 1. a and b must differ.
-inline double foot_share(Vec p, Vec a, Vec b) { return dot(p - a, b - a) / dot(b - a, b - a); }
+// Share of the way from a to b where p's foot lies, not cut to 0 ... 1; 0 where a and b are one point.
+inline double foot_share(Vec p, Vec a, Vec b) {
+  const double square = dot(b - a, b - a);
+  return square > 0 ? dot(p - a, b - a) / square : 0.0;
+}
 inline Vec along(Vec a, Vec b, double share) { return a + share * (b - a); }
 inline Vec nearest_on(Vec p, Vec a, Vec b) { return along(a, b, std::clamp(foot_share(p, a, b), 0.0, 1.0)); }
 inline double distance_to(Vec p, Vec a, Vec b) { return distance(p, nearest_on(p, a, b)); }

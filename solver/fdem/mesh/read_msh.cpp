@@ -118,7 +118,7 @@ MeshResult from_msh(std::string_view bytes, const MeshChoice& choice) {
   if (!content->names_cracks) mark_cracks(made.mesh, made.cracks, on_line_share * choice.element_size);
   if (std::string reason = gate(made.mesh, choice, made.report); !reason.empty()) return refuse(std::move(reason));
   const double reach = content->names_cracks ? choice.element_size : 2 * on_line_share * choice.element_size;
-  if (std::string reason = uncovered_crack(made.mesh, choice, reach); !reason.empty()) return refuse(std::move(reason));
+  if (std::string reason = strayed_crack(made.mesh, choice, reach); !reason.empty()) return refuse(std::move(reason));
   return made;
 }
 
