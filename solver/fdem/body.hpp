@@ -38,6 +38,7 @@ struct Body {
   std::vector<unsigned char> asleep;                // by edge: 1 ties both sides together and never opens; empty: none
   std::vector<std::array<double, 2>> displacement;  // at t = 0, by corner, m; empty: none
   std::vector<std::array<double, 2>> velocity;      // at t = 0, by corner, m/s; empty: at rest
+  std::vector<Corner> exposed;                      // sides (edge k of triangle t, as 3 t + k) that may be touched from the start
   std::vector<Told> told;                           // a corner's axis is told once
   std::vector<Pull> pulls;
   std::array<double, 2> gravity{};      // m/s^2

@@ -26,6 +26,8 @@ double penalty_of(const Material& material, const FdemSettings& settings) {
   return settings.penalty.value_or(10.0) * material.elasticity.C11 / settings.element_size;
 }
 
+double contact_penalty_of(const Material& material, const FdemSettings& settings) { return settings.contact_penalty * young_of(material); }
+
 Curve curve_of(const FdemSettings& settings) { return settings.softening == Softening::munjiza ? Curve::munjiza : Curve::linear; }
 
 law::Joint<double> joint_law(const Material& left, const Material& right, const FdemSettings& settings) {

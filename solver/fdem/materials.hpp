@@ -13,6 +13,9 @@ double young_of(const Material& material);
 // p, Pa/m: 100 E / h in the reference tier, 10 C11 / h in the others, or the factor that the settings give.
 double penalty_of(const Material& material, const FdemSettings& settings);
 
+// Of contact, Pa.
+double contact_penalty_of(const Material& material, const FdemSettings& settings);
+
 Curve curve_of(const FdemSettings& settings);
 
 // Joints between two materials have the weaker one's numbers, each for itself.

@@ -58,7 +58,8 @@ struct State {
   std::vector<unsigned char> joint_state;  // by block
   std::vector<double> break_time;          // by edge
   std::vector<unsigned char> break_mode;
-  Field<Real> extra;  // rows of tractions, weight and contact at u, N/m
+  Field<Real> extra;         // rows of tractions, weight and contact at u, N/m
+  std::vector<int> exposed;  // sides that contact knows, in the order they came
   Ledger ledger;
 };
 

@@ -72,6 +72,18 @@ void place_triangles(const Body& body, const FdemSettings& settings, Plan& plan)
   }
 }
 
+void set_contact(const Body& body, const FdemSettings& settings, Plan& plan) {
+  for (const Material& material : body.materials) {
+    plan.contact.friction = std::max(plan.contact.friction, material.cohesion->friction);
+    plan.contact.penalty = std::max(plan.contact.penalty, contact_penalty_of(material, settings));
+  }
+  if (body.materials.size() < 2) return;
+  for (int slot = 0; slot < plan.slots; ++slot) {
+    const int material = plan.law_of_block[static_cast<Index>(slot / lanes)];
+    plan.contact.triangle_penalty.push_back(contact_penalty_of(body.materials[static_cast<Index>(material)], settings));
+  }
+}
+
 // Which edge of the triangle goes from node a to node b.
 int edge_in(const std::array<int, 3>& triangle, int a, int b) {
   for (int k = 0; k < 3; ++k)
@@ -98,6 +110,7 @@ void join_neighbours(const Body& body, Plan& plan) {
     const Sides sides = sides_of(body, plan, edge);
     plan.neighbour[static_cast<Index>(sides.left)] = sides.right;
     plan.neighbour[static_cast<Index>(sides.right)] = sides.left;
+    if (body.mesh.edge_kind[edge] == EdgeKind::crack) plan.crack_sides.push_back(sides.left), plan.crack_sides.push_back(sides.right);
   }
 }
 
@@ -217,6 +230,7 @@ Plan make_plan(const Body& body, const FdemSettings& settings) {
   Plan plan;
   measure_body(body, plan);
   place_triangles(body, settings, plan);
+  set_contact(body, settings, plan);
   join_neighbours(body, plan);
   place_joints(body, settings, plan);
   tie_corners(body, plan);

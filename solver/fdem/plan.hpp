@@ -7,6 +7,7 @@
 
 #include "common/scene/scene.hpp"
 #include "solver/fdem/body.hpp"
+#include "solver/fdem/contact/contact.hpp"
 #include "solver/fdem/kernels.hpp"
 
 namespace fracfarm::fdem {
@@ -20,7 +21,9 @@ struct Plan {
   std::vector<TriangleLaw<double>> laws;
   std::vector<int> law_of_block;
   std::vector<double> corner_rows;  // by slot, rows of row_size: undeformed corners, m
-  std::vector<int> neighbour;       // by side 3 slot + k: the side across, -1 on the boundary
+  std::vector<int> crack_sides;     // of initial cracks, 3 slot + k
+  ContactSettings contact;
+  std::vector<int> neighbour;  // by side 3 slot + k: the side across, -1 on the boundary
   // Joints.
   int joints = 0;             // a multiple of `lanes`
   std::vector<int> edge_of;   // by joint, -1: a pad

@@ -26,6 +26,10 @@ std::vector<Sums> in_chunks(int blocks, int threads, const Job& job) {
   return sums;
 }
 
+bool sides_exist(const std::vector<int>& sides, const Plan& plan) {
+  return std::all_of(sides.begin(), sides.end(), [&](int side) { return side >= 0 && side < 3 * plan.slots; });
+}
+
 }  // namespace
 
 template <class Real>
@@ -38,7 +42,8 @@ Fdem<Real>::Fdem(Body body, const FdemSettings& settings, const Rules& rules, in
       plan_(make_plan(body_, settings)),
       model_(make_model<Real>(plan_, body_)),
       state_(make_state(plan_, model_, body_)),
-      scratch_(make_scratch(plan_, model_, body_)) {}
+      scratch_(make_scratch(plan_, model_, body_)),
+      contact_(plan_.corner_rows, plan_.neighbour, plan_.contact) {}
 
 template <class Real>
 View<Real> Fdem<Real>::view() const {
@@ -100,9 +105,33 @@ void Fdem<Real>::note_breaks(double time) {
       const int edge = plan_.edge_of[static_cast<Index>(b * lanes + l)];
       if (edge < 0 || state_.damage[at] < Real(1) || state_.damage[at + lanes] < Real(1)) continue;
       double& broke = state_.break_time[static_cast<Index>(edge)];
-      if (std::isnan(broke)) broke = time, state_.break_mode[static_cast<Index>(edge)] = static_cast<unsigned char>(mode_of(b, l));
+      if (!std::isnan(broke)) continue;
+      broke = time, state_.break_mode[static_cast<Index>(edge)] = static_cast<unsigned char>(mode_of(b, l));
+      if (state_.exposed.empty()) expose_cracks();
+      expose(plan_.left_side[static_cast<Index>(b * lanes + l)]), expose(plan_.right_side[static_cast<Index>(b * lanes + l)]);
     }
   }
+}
+
+template <class Real>
+void Fdem<Real>::expose(int side) {
+  contact_.expose(side);
+  state_.exposed.push_back(side);
+  watch_side(side);
+}
+
+// Forces of contact come in by the triangle's row of `extra`.
+template <class Real>
+void Fdem<Real>::watch_side(int side) {
+  const int slot = side / 3;
+  scratch_.needs[static_cast<Index>(slot / lanes)] |= needs_extra;
+  scratch_.extra_slots.push_back(slot);
+}
+
+// The faces of initial cracks.
+template <class Real>
+void Fdem<Real>::expose_cracks() {
+  for (const int side : plan_.crack_sides) expose(side);
 }
 
 // By the shares of opening and sliding, each of what breaks the joint alone, in their squares: three quarters of one name it.
@@ -233,6 +262,9 @@ Result<void> Fdem<Real>::start(double dt) {
   put_rows();
   join(0.0);
   pull(0.0);
+  for (const Corner side : body_.exposed) expose(plan_.corner_of(side));
+  if (!rules_.contact_after_break) expose_cracks();
+  contact_.add_forces(scratch_.rows.data(), state_.extra.data());
   double given = 0.0;  // J/m, by velocities that are told from the start
   remember_told();
   step_back(dt);
@@ -271,6 +303,8 @@ Result<void> Fdem<Real>::step(long long n, double dt) {
   clock.end(Stage::boundary);
   join(next);
   clock.end(Stage::joints);
+  contact_.add_forces(scratch_.rows.data(), state_.extra.data());
+  clock.end(Stage::contact);
   return {};
 }
 
@@ -293,7 +327,9 @@ SampleRow Fdem<Real>::sample(long long n, double dt) const {
   row.kinetic_energy = sums.kinetic;
   row.elastic_energy = sums.elastic + ledger.joints_stored;
   row.plastic_energy = ledger.plastic + sums.plastic;
-  row.fracture_energy = ledger.fracture;
+  const ContactEnergies& contact = contact_.energies();
+  row.contact_energy = contact.stored, row.friction_energy = contact.friction;
+  row.fracture_energy = ledger.fracture - contact.jumped;  // what broken joints leave to contact is not gone
   row.viscous_energy = ledger.viscous + (n > 0 ? dt * sums.viscous : 0.0);
   row.external_work = ledger.external_work + (n > 0 ? 0.5 * dt * (told.before + power_of_pulls(time)) : 0.0);
   row.energy_residual = energy_residual(row, ledger.initial_energy);
@@ -318,7 +354,9 @@ void Fdem<Real>::save(ArchiveWriter& archive) const {
   const State<Real>& s = state_;
   for (const Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.put_array(*field);
   archive.put_array(s.joint_state), archive.put_array(s.break_time), archive.put_array(s.break_mode);
+  archive.put_array(s.exposed);
   archive.put(s.ledger);
+  contact_.save(archive);
 }
 
 template <class Real>
@@ -326,8 +364,12 @@ bool Fdem<Real>::load(ArchiveReader& archive, long long n, double dt) {
   State<Real>& s = state_;
   for (Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.get_array_like(*field);
   archive.get_array_like(s.joint_state), archive.get_array_like(s.break_time), archive.get_array_like(s.break_mode);
+  archive.get_array(s.exposed);
   s.ledger = archive.get<Ledger>();
+  if (archive.failed() || !sides_exist(s.exposed, plan_)) return false;
+  contact_.load(archive);
   if (archive.failed()) return false;
+  for (const int side : s.exposed) watch_side(side);
   dt_ = dt;
   put_rows();
   tell_velocities((static_cast<double>(n) + 0.5) * dt);

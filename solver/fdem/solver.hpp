@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/fdem/contact/contact.hpp"
 #include "solver/fdem/kernels.hpp"
 #include "solver/fdem/model.hpp"
 #include "solver/simulation.hpp"
@@ -49,6 +50,9 @@ class Fdem final : public MeshSimulation {
   void pull(double time);
   void move_as_one(double dt);
   void note_breaks(double time);
+  void expose(int side);
+  void expose_cracks();
+  void watch_side(int side);
   void step_back(double dt);
   void remember_told() const;
   Powers power_of_told(double dt) const;
@@ -65,6 +69,7 @@ class Fdem final : public MeshSimulation {
   Model<Real> model_;
   State<Real> state_;
   mutable Scratch<Real> scratch_;
+  Contact<Real> contact_;
   mutable double stable_dt_ = 0.0;
   double dt_ = 0.0;
 };

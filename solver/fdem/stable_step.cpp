@@ -4,7 +4,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <random>
+
+#include "common/base/random.hpp"
 
 namespace fracfarm::fdem {
 namespace {
@@ -130,9 +131,9 @@ double edge(double k, double c) { return 4.0 / (c + std::sqrt(c * c + 4.0 * k));
 Vector start_vector(const Operators& operators) {
   const Vector rate = operators.stiffest();
   const double most = rate.maxCoeff();
-  std::mt19937 random(1);  // its numbers are specified, so is this start
+  RandomStream random(1, 0, 0);
   Vector y(rate.size());
-  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = std::pow(rate[i] / most, 8.0) * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = std::pow(rate[i] / most, 8.0) * random.uniform(-0.5, 0.5);
   operators.project(y);
   return y.normalized();
 }

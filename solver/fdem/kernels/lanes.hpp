@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#if defined(__SSE2__)
+#ifdef __SSE2__
 #include <immintrin.h>
 #endif
 
@@ -21,7 +21,7 @@ using Real = FRACFARM_REAL;
 using View = fdem::View<Real>;
 using Index = std::ptrdiff_t;
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#ifdef __AVX512DQ__
 #define FRACFARM_MASKS 1
 inline constexpr int register_bytes = 64;
 #elif defined(__AVX2__)
@@ -36,7 +36,7 @@ typedef Real Raw __attribute__((vector_size(width * sizeof(Real))));
 typedef Real Four __attribute__((vector_size(4 * sizeof(Real))));
 typedef Real Eight __attribute__((vector_size(8 * sizeof(Real))));
 
-#if defined(FRACFARM_MASKS)
+#ifdef FRACFARM_MASKS
 using RawMask = std::conditional_t<width == 16, __mmask16, __mmask8>;
 INLINE RawMask above(__m512 a, __m512 b) { return RawMask(_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ)); }
 INLINE RawMask above(__m512d a, __m512d b) { return RawMask(_mm512_cmp_pd_mask(a, b, _CMP_GT_OQ)); }
@@ -75,7 +75,7 @@ INLINE Lanes larger(Lanes a, Lanes b) { return select(a > b, a, b); }
 INLINE Lanes smaller(Lanes a, Lanes b) { return select(a > b, b, a); }
 
 INLINE Lanes sqrt(Lanes a) {
-#if defined(FRACFARM_MASKS)
+#ifdef FRACFARM_MASKS
   if constexpr (sizeof(Real) == 4)
     return Raw(_mm512_mask_sqrt_ps(__m512(a.raw), __mmask16(-1), __m512(a.raw)));
   else
@@ -93,7 +93,7 @@ INLINE Lanes sqrt(Lanes a) {
 }
 
 INLINE bool any(Mask m) {
-#if defined(FRACFARM_MASKS)
+#ifdef FRACFARM_MASKS
   return m.raw != 0;
 #elif defined(__AVX2__)
   return sizeof(Real) == 4 ? _mm256_movemask_ps(__m256(m.raw)) != 0 : _mm256_movemask_pd(__m256d(m.raw)) != 0;
