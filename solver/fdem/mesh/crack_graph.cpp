@@ -43,11 +43,12 @@ int CrackGraph::nearest_vertex(Vec p, double within) const {
   return best;
 }
 
-int CrackGraph::nearest_edge(Vec p, double within) const {
+int CrackGraph::nearest_edge(Vec p, double within, int apart_from) const {
   int best = -1;
   visit_cells(p - Vec{within, within}, p + Vec{within, within}, [&](std::size_t cell) {
     for (const int e : edges_in_[cell]) {
       const GraphEdge& edge = edges_[static_cast<std::size_t>(e)];
+      if (edge.a == apart_from || edge.b == apart_from) continue;
       const double d = distance_to(p, at(edge.a), at(edge.b));
       if (d < within || (d == within && e < best)) within = d, best = e;
     }
@@ -134,17 +135,24 @@ int CrackGraph::place(Vec p) {
   int there = nearest_vertex(p, tolerance_);
   merged_ += distance(drawn, there >= 0 ? at(there) : p) > 1e-6 * size_;
   if (there >= 0) return there;
-  const int near = nearest_edge(p, clearance_);
-  if (near < 0) return add_vertex(p);
-  const GraphEdge edge = edges_[static_cast<std::size_t>(near)];
-  const Vec foot = nearest_on(p, at(edge.a), at(edge.b));
-  const bool on_foot = edge.kind != LineKind::crack || nearest_vertex(foot, tolerance_) < 0;
-  there = on_foot ? place_fixed(foot) : add_vertex(p);
-  if (there == edge.a || there == edge.b) return there;
-  remove_edge(near);
-  connect(edge.a, there, edge.kind);
-  connect(there, edge.b, edge.kind);
+  if (const int near = nearest_edge(p, clearance_, -1); near >= 0) {
+    const GraphEdge& edge = edges_[static_cast<std::size_t>(near)];
+    const Vec foot = nearest_on(p, at(edge.a), at(edge.b));
+    if (edge.kind != LineKind::crack || nearest_vertex(foot, tolerance_) < 0) p = foot;
+  }
+  there = place_fixed(p);
+  lead_edges_over(there);
   return there;
+}
+
+// Edges nearer than the clearance: split where the vertex lies on them, bent where it lies beside.
+void CrackGraph::lead_edges_over(int vertex) {
+  for (int near = 0; !tangled_ && (near = nearest_edge(at(vertex), clearance_, vertex)) >= 0;) {
+    const GraphEdge edge = edges_[static_cast<std::size_t>(near)];
+    remove_edge(near);
+    connect(edge.a, vertex, edge.kind);
+    connect(vertex, edge.b, edge.kind);
+  }
 }
 
 void CrackGraph::draw(int a, int b, LineKind kind) {

@@ -49,7 +49,8 @@ class CrackGraph {
   Obstacle crossed_edge(int a, int b) const;
   void cross_at(int a, int b, LineKind kind, const Obstacle& crossing);
   int nearest_vertex(Vec p, double within) const;
-  int nearest_edge(Vec p, double within) const;
+  int nearest_edge(Vec p, double within, int apart_from) const;  // of those that do not end in vertex `apart_from`
+  void lead_edges_over(int vertex);
   int add_vertex(Vec p);
   void add_edge(int a, int b, LineKind kind);
   void remove_edge(int edge);

@@ -163,8 +163,11 @@ class Repairer {
       const double beyond = std::max({0.0, -meet->second, meet->second - 1}) * distance(c, d);
       if (meet->first > 0 && distance(there, end) < 2 * tolerance_ && (beyond == 0 || (is_crack && beyond < tolerance_))) target = there;
     }
-    target.x = std::clamp(target.x, 0.0, choice_.width);
-    target.z = std::clamp(target.z, 0.0, choice_.height);
+    target = {std::clamp(target.x, 0.0, choice_.width), std::clamp(target.z, 0.0, choice_.height)};
+    for (const auto& [p, q] : {std::pair{from, end}, std::pair{c, d}}) {  // upright and level lines stay so to the bit
+      if (p.x == q.x && std::fabs(target.x - p.x) <= already_) target.x = p.x;
+      if (p.z == q.z && std::fabs(target.z - p.z) <= already_) target.z = p.z;
+    }
     if (distance(target, end) <= already_) return false;
     ++(distance(from, target) < distance(from, end) ? out_.trimmed : out_.extended);
     (at_last ? crack.x1 : crack.x0) = target.x;
