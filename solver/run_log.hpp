@@ -47,10 +47,11 @@ class RunLog {
   Series series_;
   std::vector<Frame> frames_;
   std::uint64_t next_frame_ = 0;
-  SampleRow last_;               // row before
-  double peak_stress_ = 0.0;     // Pa, over every step of a grid, every row of a mesh
-  double largest_work_ = 0.0;    // J/m
-  double largest_energy_ = 0.0;  // J/m
+  SampleRow last_;                // row before
+  double peak_stress_ = 0.0;      // Pa, over every step of a grid, every row of a mesh
+  double energy_at_start_ = 0.0;  // J/m, kinetic and elastic
+  double largest_work_ = 0.0;     // J/m
+  double largest_energy_ = 0.0;   // J/m
   double largest_residual_ = 0.0;
 };
 

@@ -97,7 +97,6 @@ void check_fdem(const Scene& scene, ProblemList& problems) {
   const double dt = scene.fdem.dt.value_or(0.05 * h / fastest_wave(scene));  // a guess: the bound is the mesh's
   if (!(scene.horizon / dt <= max_steps))
     problems.add("time.horizon", shortest(scene.horizon), fmt::format("at most {} steps of about {} s", shortest(max_steps), shortest(dt)));
-  if (scene.initial != Initial{}) problems.add("initial", "given", "method phase_field only", "start at rest and load the sides");
 }
 
 // What follows the tier stays away, so that a later default of a tier changes no old scene only where it was written.

@@ -25,6 +25,7 @@ struct Task {
   double wall_budget_s = 8.0 * 3600.0;
   int attempt = 1;
   double step_scale = 1.0;  // dt factor, 0.5 after SOLVER_NUMERIC
+  int threads = 1;          // of one large FDEM run by hand; a worker's slot is one core, so it is not on the pipe
 };
 
 // What `solve --json` prints (SCENES.md), and what a `done` report carries.

@@ -21,11 +21,14 @@ int main(int argc, char** argv) {
   app.add_option("--checkpoint", options.checkpoint,
                  "kept on SIGTERM, SIGINT, at the wall budget and every 5 minutes; resumed from where it fits");
   app.add_option("--wall-budget", budget, "wall-clock limit: seconds, or 30s, 10m, 8h, 2d")->capture_default_str();
+  app.add_option("--threads", options.threads, "of one FDEM run; the result is the same to the last bit")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_flag("--json", options.json, "print the summary as one JSON object");
   app.add_flag("--quiet", options.quiet, "no progress and no warnings");
   app.add_flag("--serve", serving, "read tasks on standard input and report on standard output, for a worker");
   app.set_version_flag("--version", build_info().build_id);
-  app.footer("exit status: 0 solved, 1 failed (diverged, no disk), 2 bad input, 3 stopped by a signal");
+  app.footer("exit status: 0 solved, 1 failed (diverged, no disk), 2 bad input or a scene that is rejected, 3 stopped by a signal");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& mistake) {

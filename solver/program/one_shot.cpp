@@ -85,6 +85,15 @@ void print_summary(const Summary& s, const OneShot& options) {
   fmt::print("{}", table_text(rows));
 }
 
+// No mesh could be made of the scene: there is no record.
+int report_rejected(const Summary& summary, const OneShot& options) {
+  if (options.json)
+    print_json(Json::parse(to_json_text(summary)));
+  else
+    fmt::print(stderr, "{} the scene is rejected: {}\n", ink("error:", Ink::red, stderr), summary.failure_rule);
+  return exit_bad_input;
+}
+
 class ProgressReport {
  public:
   explicit ProgressReport(bool quiet) : quiet_(quiet) {}
@@ -120,6 +129,7 @@ int solve_one(const OneShot& options) {
   task.output = options.output;
   task.checkpoint = options.checkpoint;
   task.wall_budget_s = options.wall_budget_s;
+  task.threads = options.threads;
   Result<TaskEnd> end = [&] {
     ProgressReport progress(options.quiet);
     return run_task(task, *scene, Keeping::durable, std::ref(progress));
@@ -130,6 +140,7 @@ int solve_one(const OneShot& options) {
                options.checkpoint.empty() ? "; no checkpoint was asked for" : "; run again to go on from " + options.checkpoint.string());
     return exit_stopped;
   }
+  if (end->summary.verdict == Verdict::rejected) return report_rejected(end->summary, options);
   print_summary(end->summary, options);
   return exit_ok;
 }

@@ -11,6 +11,7 @@ struct OneShot {
   std::filesystem::path output;
   std::filesystem::path checkpoint;
   double wall_budget_s = 8.0 * 3600.0;
+  int threads = 1;  // of an FDEM run
   bool json = false;
   bool quiet = false;
 };

@@ -18,6 +18,7 @@ Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, Keeping ke
   control.stop = &stop_requested();
   control.progress = progress;
   control.step_scale = task.step_scale;
+  control.threads = task.threads;
   Result<RunResult> result = solve(scene, control);
   if (!result) return tl::unexpected(result.error());
   if (result->stopped) return TaskEnd{true, {}};

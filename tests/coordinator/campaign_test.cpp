@@ -139,14 +139,19 @@ TEST_CASE("redraw reaches the patterns") {
 }
 
 TEST_CASE("the sample campaigns are campaigns, of the sizes that they state") {
-  CHECK(job_count(campaign_of(sample_file("demo.toml"))) == 20);
+  CHECK(job_count(campaign_of(sample_file("demo.toml"))) == 23);
   const Campaign published = campaign_of(sample_file("published.toml"));
-  CHECK(job_count(published) == 2'010'000);
+  CHECK(job_count(published) == 2'100'000);
   const JobSpec last = job_at(published, 2'009'999);
   CHECK(last.material == "steel");
   CHECK(last.load == "biaxial");
   CHECK(last.set == CrackSet::oblique);
   CHECK(last.sample_id == 1000);
+  const JobSpec mesh = job_at(published, 2'099'999);
+  CHECK(mesh.method == Method::fdem);
+  CHECK(mesh.material == "tungsten");
+  CHECK(mesh.sample_id == 30'000);
+  CHECK(scene_of(published, mesh).method == Method::fdem);
 }
 
 TEST_CASE("a campaign comes back from its canonical text, and the text from it") {
