@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double crack_reach = 0.75;  // of an element: how far repair may lead a crack from where it was drawn
+constexpr double crack_reach = 1.0;  // of an element: how far repair may lead a crack from where it was drawn
 constexpr double patience_s = 2.0;
 
 struct Findings {

@@ -50,7 +50,10 @@ class Repairer {
  public:
   Repairer(const MeshChoice& choice, double tolerance) : choice_(choice), tolerance_(tolerance), already_(1e-6 * tolerance) {
     for (Segment crack : choice.cracks)
-      if (clip(crack, choice.width, choice.height)) out_.cracks.push_back(crack);
+      if (clip(crack, choice.width, choice.height)) {
+        out_.cracks.push_back(crack);
+        drawn_.push_back({crack});
+      }
     const double w = choice.width, h = choice.height;
     fixed_ = {{0, 0, w, 0}, {0, h, w, h}, {0, 0, 0, h}, {w, 0, w, h}};
     for (const double z : choice.layers) fixed_.push_back({0, z, w, z});
@@ -70,18 +73,30 @@ class Repairer {
  private:
   std::vector<Segment>& cracks() { return out_.cracks; }
 
+  void erase(std::size_t i) {
+    out_.cracks.erase(out_.cracks.begin() + static_cast<std::ptrdiff_t>(i));
+    drawn_.erase(drawn_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+
+  // Repairs follow each other: the line of a crack stays within the tolerance of the ends of every crack that it stands for.
+  bool stays_near(const Segment& line, const std::vector<Segment>& drawn) const {
+    const Vec a = fdem::first(line), b = last(line);
+    const auto near = [&](Vec p) { return distance(p, along(a, b, foot_share(p, a, b))) < 1.000001 * tolerance_; };
+    return std::all_of(drawn.begin(), drawn.end(), [&](const Segment& one) { return near(fdem::first(one)) && near(last(one)); });
+  }
+
   // A crack along a side separates nothing: it goes. One along a layer is moved onto it.
   bool leave_sides() {
     bool changed = false;
     for (std::size_t i = 0; i < cracks().size();) {
       const int line = fixed_along(cracks()[i]);
       if (line >= 0 && line < 4) {
-        cracks().erase(cracks().begin() + static_cast<std::ptrdiff_t>(i));
+        erase(i);
         ++out_.moved;
         changed = true;
         continue;
       }
-      if (line >= 4) changed = put_at_height(cracks()[i], fixed_[static_cast<std::size_t>(line)].z0) || changed;
+      if (line >= 4) changed = put_at_height(i, fixed_[static_cast<std::size_t>(line)].z0) || changed;
       ++i;
     }
     return changed;
@@ -95,9 +110,10 @@ class Repairer {
     return -1;
   }
 
-  bool put_at_height(Segment& crack, double z) {
-    if (crack.z0 == z && crack.z1 == z) return false;
-    crack.z0 = crack.z1 = z;
+  bool put_at_height(std::size_t i, double z) {
+    const Segment level{cracks()[i].x0, z, cracks()[i].x1, z};
+    if (cracks()[i] == level || !stays_near(level, drawn_[i])) return false;
+    cracks()[i] = level;
     ++out_.moved;
     return true;
   }
@@ -105,18 +121,26 @@ class Repairer {
   bool join_parallel() {
     bool changed = false;
     for (std::size_t i = 0; i < cracks().size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        const bool onto_older = lies_along(cracks()[i], cracks()[j]);
-        if (!onto_older && !lies_along(cracks()[j], cracks()[i])) continue;
-        cracks()[j] = onto_older ? united(cracks()[j], cracks()[i]) : united(cracks()[i], cracks()[j]);
-        cracks().erase(cracks().begin() + static_cast<std::ptrdiff_t>(i));
-        ++out_.moved;
-        changed = true;
-        --i;
-        j = 0;
-        break;
-      }
+      for (std::size_t j = 0; j < i; ++j)
+        if (join(i, j)) {
+          changed = true;
+          --i;  // what was i is gone
+          break;
+        }
     return changed;
+  }
+
+  // Crack i becomes a part of the older crack j, on the line of whichever of the two the other lies along.
+  bool join(std::size_t i, std::size_t j) {
+    const bool onto_older = lies_along(cracks()[i], cracks()[j]);
+    if (!onto_older && !lies_along(cracks()[j], cracks()[i])) return false;
+    const Segment both = onto_older ? united(cracks()[j], cracks()[i]) : united(cracks()[i], cracks()[j]);
+    if (!stays_near(both, drawn_[i]) || !stays_near(both, drawn_[j])) return false;
+    cracks()[j] = both;
+    drawn_[j].insert(drawn_[j].end(), drawn_[i].begin(), drawn_[i].end());
+    erase(i);
+    ++out_.moved;
+    return true;
   }
 
   // Both ends of `it` within tolerance of the line of `of`, and their lengths overlap or touch.
@@ -168,21 +192,23 @@ class Repairer {
       if (p.x == q.x && std::fabs(target.x - p.x) <= already_) target.x = p.x;
       if (p.z == q.z && std::fabs(target.z - p.z) <= already_) target.z = p.z;
     }
-    if (distance(target, end) <= already_) return false;
+    const Segment mended = at_last ? Segment{from.x, from.z, target.x, target.z} : Segment{target.x, target.z, from.x, from.z};
+    if (distance(target, end) <= already_ || !stays_near(mended, drawn_[i])) return false;
     ++(distance(from, target) < distance(from, end) ? out_.trimmed : out_.extended);
-    (at_last ? crack.x1 : crack.x0) = target.x;
-    (at_last ? crack.z1 : crack.z0) = target.z;
+    crack = mended;
     return true;
   }
 
   // What was trimmed away altogether.
   void drop_short() {
-    std::erase_if(cracks(), [&](const Segment& crack) { return length(crack) < tolerance_; });
+    for (std::size_t i = cracks().size(); i-- > 0;)
+      if (length(cracks()[i]) < tolerance_) erase(i);
   }
 
   const MeshChoice& choice_;
   double tolerance_, already_;
-  std::vector<Segment> fixed_;  // four sides, then layers
+  std::vector<Segment> fixed_;               // four sides, then layers
+  std::vector<std::vector<Segment>> drawn_;  // what each crack stands for
   RepairedCracks out_;
 };
 
