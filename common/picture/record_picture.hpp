@@ -1,4 +1,4 @@
-// Pictures of a record: what `fracfarm show -o` and the report draw. The one file of this room that knows records.
+// Pictures of a record: what `fracfarm show -o` and the report draw. This file and the panels of the methods are what knows records here.
 #pragma once
 
 #include "common/picture/canvas.hpp"
@@ -6,7 +6,11 @@
 
 namespace fracfarm::picture {
 
-// Initial pattern, a few frames, the field at failure, stress and energy over time, and a title that says what it is.
+// Initial pattern, a few frames, the damage at failure, stress and energy over time, and a title that says what it is. A method that has no
+// frames gets the curves alone.
 Canvas draw_record(const Record& record);
+
+// One field of damage of the record, as its method draws it; as high as the body asks.
+Canvas draw_damage(const Record& record, const std::vector<float>& damage, int width);
 
 }  // namespace fracfarm::picture

@@ -56,4 +56,9 @@ struct Record {
       provenance;  // build id, compiler, flags, CPU, library versions, settings, wall and CPU seconds, peak memory, attempt, kernel
 };
 
+// Of the frames of its method, s.
+inline const std::vector<double>& frame_times(const Record& record) {
+  return record.method == "fdem" ? record.fdem.time : record.phase_field.time;
+}
+
 }  // namespace fracfarm

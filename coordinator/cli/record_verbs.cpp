@@ -61,6 +61,19 @@ int exit_of(const std::vector<CheckedFile>& files) {
   return std::all_of(files.begin(), files.end(), [](const CheckedFile& file) { return file.sound(); }) ? exit_ok : exit_failed;
 }
 
+bool on_mesh(const Record& r) { return r.method == "fdem"; }
+
+Json nodes(const Record& r) { return on_mesh(r) ? Json(r.fdem.mesh.nodes.size()) : Json{r.phase_field.x.size(), r.phase_field.z.size()}; }
+
+Json mesh(const Record& r) {
+  if (!on_mesh(r)) return nullptr;
+  const std::vector<float>& damage = r.fdem.damage_failure;
+  return {{"triangles", r.fdem.mesh.triangles.size()},
+          {"edges", damage.size()},
+          {"initial_cracks", std::count(damage.begin(), damage.end(), 2.0f)},
+          {"broken", std::count(damage.begin(), damage.end(), 1.0f)}};
+}
+
 Json to_json(const Record& r, const std::string& path) {
   Json times = Json::object(), provenance = Json::object(), columns = Json::array();
   for (const FailureTime& candidate : r.failure_times) times[candidate.rule] = number(candidate.time);
@@ -79,12 +92,14 @@ Json to_json(const Record& r, const std::string& path) {
           {"failure_rule", r.judgement.rule},
           {"confidence", number(r.judgement.confidence)},
           {"times", times},
+          {"disagreement", number(disagreement(r.failure_times))},
           {"peak_stress", number(r.peak_stress)},
           {"energy_residual", number(r.energy_residual)},
-          {"nodes", {r.phase_field.x.size(), r.phase_field.z.size()}},
+          {"nodes", nodes(r)},
+          {"mesh", mesh(r)},
           {"cracks", r.cracks.size()},
-          {"frames", r.phase_field.time.size()},
-          {"last_frame", number(r.phase_field.time.back())},
+          {"frames", frame_times(r).size()},
+          {"last_frame", frame_times(r).empty() ? Json(nullptr) : number(frame_times(r).back())},
           {"series_rows", r.series.rows()},
           {"series", columns},
           {"scene", Json::parse(r.canonical_scene, nullptr, false)},
@@ -95,6 +110,16 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string seconds(const std::optional<double>& time) { return time ? engineering(*time, "s") : "not met"; }
 
+std::string body(const Record& r) {
+  if (!on_mesh(r))
+    return fmt::format("{} x {} nodes, {} x {}", r.phase_field.x.size(), r.phase_field.z.size(), engineering(r.phase_field.x.back(), "m"),
+                       engineering(r.phase_field.z.back(), "m"));
+  const auto& damage = r.fdem.damage_failure;
+  return fmt::format("{} nodes, {} triangles, {} edges of which {} initial cracks and {} broken at the failure", r.fdem.mesh.nodes.size(),
+                     r.fdem.mesh.triangles.size(), damage.size(), std::count(damage.begin(), damage.end(), 2.0f),
+                     std::count(damage.begin(), damage.end(), 1.0f));
+}
+
 Rows facts(const Record& r) {
   const std::string sample = r.sample_id ? fmt::format("sample {} of seed {:#x}", r.sample_id, r.pattern_seed) : "not of a campaign";
   return {{"what", "value"},
@@ -102,15 +127,15 @@ Rows facts(const Record& r) {
           {"load", r.boundary_condition},
           {"sample", sample},
           {"method", r.method},
-          {"grid", fmt::format("{} x {} nodes, {} x {}", r.phase_field.x.size(), r.phase_field.z.size(),
-                               engineering(r.phase_field.x.back(), "m"), engineering(r.phase_field.z.back(), "m"))},
+          {on_mesh(r) ? "mesh" : "grid", body(r)},
           {"cracks", fmt::format("{}", r.cracks.size())},
           {"verdict", fmt::format("{} ({})", name_of(r.judgement.verdict), r.judgement.rule)},
           {"time to failure", seconds(r.judgement.time_to_failure)},
           {"confidence", fmt::format("{:.2f}", r.judgement.confidence)},
+          {"criteria apart", disagreement(r.failure_times) ? seconds(disagreement(r.failure_times)) : "only one was met"},
           {"peak stress", engineering(r.peak_stress, "Pa")},
           {"energy residual", fmt::format("{:.3g} % of the work", 100.0 * r.energy_residual)},
-          {"frames", fmt::format("{} to {}", r.phase_field.time.size(), engineering(r.phase_field.time.back(), "s"))},
+          {"frames", fmt::format("{} to {}", frame_times(r).size(), frame_times(r).empty() ? "" : engineering(frame_times(r).back(), "s"))},
           {"series", fmt::format("{} rows of {} columns", r.series.rows(), r.series.columns.size())},
           {"key", r.key}};
 }

@@ -10,7 +10,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
-#include "common/picture/plot.hpp"
+#include "common/picture/record_picture.hpp"
 #include "common/record/reader.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
@@ -54,12 +54,13 @@ std::set<std::uint64_t> jobs_to_draw(const std::vector<ReportRun>& runs) {
 }
 
 ReportPicture picture_of(const Record& record) {
-  const PhaseFieldFrames& frames = record.phase_field;
-  const int columns = static_cast<int>(frames.x.size()), rows = static_cast<int>(frames.z.size());
-  const auto png = [&](const std::vector<float>& field) {
-    return picture::png_bytes(picture::draw_field({field, columns, rows}, picture_pixels, picture_pixels * rows / std::max(columns, 1)));
+  const bool on_mesh = record.method == "fdem";
+  const auto png = [&](const std::vector<float>& damage) {
+    return picture::png_bytes(picture::draw_damage(record, damage, picture_pixels));
   };
-  ReportPicture drawn{png(frames.psi_initial), png(frames.psi_failure), {}};
+  ReportPicture drawn{png(on_mesh ? record.fdem.damage_initial : record.phase_field.psi_initial),
+                      png(on_mesh ? record.fdem.damage_failure : record.phase_field.psi_failure),
+                      {}};
   const auto time = record.series["step_time"], stress = record.series["stress_zz"];
   const std::size_t stride = std::max<std::size_t>(1, time.size() / curve_points);
   for (std::size_t i = 0; i < time.size(); i += stride) drawn.stress.emplace_back(time[i], stress[i]);

@@ -58,3 +58,43 @@ TEST_CASE("the largest drop is found wherever it stands, and growth is none") {
     REQUIRE(largest_drop(before, after) == before[place] - after[place]);
   }
 }
+
+TEST_CASE("a joint may be at 2 but at nothing else outside 0...1, wherever it stands") {
+  std::vector<float> damage = ramp();
+  damage[5] = -0.0f, damage[6] = 2.0f;
+  CHECK(in_joint_range(damage));
+  CHECK(joint_excursion(damage) == 0.0f);
+  for (float value : {std::nextafter(1.0f, 2.0f), std::nextafter(2.0f, 1.0f), std::nextafter(2.0f, 3.0f), -1e-9f, std::nanf(""), infinity})
+    for (std::size_t place = 0; place < damage.size(); ++place) {
+      std::vector<float> harmed = ramp();
+      harmed[place] = value;
+      REQUIRE_FALSE(in_joint_range(harmed));
+    }
+  damage[8] = 1.25f;
+  CHECK(joint_excursion(damage) == 0.25f);
+  damage[9] = 1.5f, damage[10] = std::nanf("");
+  CHECK(joint_excursion(damage) == 0.5f);
+  damage[548] = -0.75f;
+  CHECK(joint_excursion(damage) == 0.75f);
+}
+
+TEST_CASE("contradictions between a field and its cracks or break times are counted, wherever they stand") {
+  std::vector<float> damage = ramp();  // the last is 1
+  std::vector<unsigned char> cracks(damage.size(), 0);
+  std::vector<std::int32_t> broken_from(damage.size(), 9);
+  broken_from.back() = 4;
+  CHECK(count_crack_contradictions(damage, cracks) == 0);
+  CHECK(count_break_contradictions(damage, broken_from, 4) == 0);
+  CHECK(count_break_contradictions(damage, broken_from, 3) == 1);
+  CHECK(count_break_contradictions(damage, broken_from, 9) == damage.size() - 1);
+  for (std::size_t place = 0; place + 1 < damage.size(); ++place) {
+    std::vector<float> harmed = damage;
+    harmed[place] = 2.0f;
+    REQUIRE(count_crack_contradictions(harmed, cracks) == 1);
+    harmed[place] = 1.0f;
+    REQUIRE(count_break_contradictions(harmed, broken_from, 4) == 1);
+    cracks[place] = 1;
+    REQUIRE(count_crack_contradictions(damage, cracks) == 1);
+    cracks[place] = 0;
+  }
+}

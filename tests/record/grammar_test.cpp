@@ -8,6 +8,7 @@
 #include "common/record/hdf5.hpp"
 #include "common/record/seal.hpp"
 #include "common/record/writer.hpp"
+#include "tests/record/sample_fdem.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/record/temporary_folder.hpp"
 
@@ -16,10 +17,10 @@ using namespace fracfarm;
 namespace {
 
 // What the validator says about the grammar after `change` was at the open file; empty where it says nothing.
-std::string said_after(const std::function<void(hid_t)>& change) {
+std::string said_after(const std::function<void(hid_t)>& change, const Record& record = sample::record()) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "record.h5";
-  const std::string sound = record_bytes(sample::record()).value();
+  const std::string sound = record_bytes(record).value();
   REQUIRE(write_atomically(path, sound.substr(0, sound.size() - seal_size)));
   {
     const h5::Silence silence;
@@ -116,6 +117,17 @@ TEST_CASE("attributes that are missing, foreign or changed are named") {
   CHECK(has(said_after([](hid_t f) { add_text(f, "/z", "NAME", "y"); }), "'NAME' is not 'z'"));
 }
 
+TEST_CASE("a record of the second schema is read: the phase field's layout is the same") {
+  CHECK(said_after([](hid_t f) { add_text(f, "/", "fracfarm_schema", "fracfarm.record/2"); }).empty());
+}
+
+TEST_CASE("the method says which layout, and must have one") {
+  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "alchemy"); }), "'method' is missing or 'alchemy'"));
+  CHECK(has(said_after([](hid_t f) { H5Adelete(f, "method"); }), "'method' is missing"));
+  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "fdem"); }), "/psi: not part of the grammar"));
+  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "phase_field"); }, sample::fdem_record()), "/node_xyz: not part"));
+}
+
 TEST_CASE("a record of the first schema is read, and one that mixes the two is not") {
   const std::string rounding = "to the nearest float with 12 explicit mantissa bits, ties to even; 0 and 1 are exact";
   const auto round_as_first = [&](hid_t f) {
@@ -129,8 +141,34 @@ TEST_CASE("a record of the first schema is read, and one that mixes the two is n
 }
 
 TEST_CASE("every dataset of the grammar is missed where it is gone") {
-  for (const grammar::DatasetRow& row : grammar::datasets("phase_field")) {
-    const std::string path = row.spec.path;
-    CHECK(has(said_after([&](hid_t f) { H5Ldelete(f, path.c_str(), H5P_DEFAULT); }), (path + ": missing").c_str()));
-  }
+  for (const Record& record : {sample::record(), sample::fdem_record()})
+    for (const grammar::DatasetRow& row : grammar::datasets(record.method)) {
+      const std::string path = row.spec.path;
+      CHECK(has(said_after([&](hid_t f) { H5Ldelete(f, path.c_str(), H5P_DEFAULT); }, record), (path + ": missing").c_str()));
+    }
+}
+
+TEST_CASE("what follows from an FDEM record's content is compared with it") {
+  const auto other_number = [](const char* name) {
+    return said_after(
+        [&](hid_t f) {
+          const double value = 1e-5;
+          const h5::Handle made = h5::attribute(H5Aopen_by_name(f, "/failure", name, H5P_DEFAULT, H5P_DEFAULT));
+          REQUIRE(H5Awrite(made, H5T_NATIVE_DOUBLE, &value) >= 0);
+        },
+        sample::fdem_record());
+  };
+  for (const char* name : {"disagreement", "five_step_settled", "settling_wait", "peak_prominence"})
+    CHECK(has(other_number(name), (std::string("'") + name + "' differs").c_str()));
+}
+
+TEST_CASE("extents of an FDEM record that differ from its number of edges are named") {
+  const auto said = [](const char* path, const Shape& shape) {
+    return said_after([&](hid_t f) { replace(f, path, shape); }, sample::fdem_record());
+  };
+  CHECK(has(said("/break_time", {{7}, {7}, true, H5T_IEEE_F64LE}), "it should be"));
+  CHECK(has(said("/damage", {{9, 7}, {9, 7}}), "it should be"));
+  CHECK(has(said("/tri_nodes", {{7, 2}, {7, 2}, true, H5T_STD_I32LE}), "extent 1 is 2, it should be 3"));
+  CHECK(has(said("/node_xyz", {{7, 3}, {7, 3}, true, H5T_IEEE_F64LE}), "chunks are 7 x 3, they should be 7 x 1"));
+  CHECK(has(said("/edge", {{1u << 27}, {65536}, true, H5T_STD_I32LE}), "file of this size"));
 }

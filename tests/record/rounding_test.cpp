@@ -54,3 +54,24 @@ TEST_CASE("a value above the through-crack threshold stays above it when rounded
   for (float value = std::nextafter(threshold, 1.0f); value < threshold + 1e-3f; value = std::nextafter(value, 1.0f))
     REQUIRE(rounded(value) > through_crack_threshold);
 }
+
+TEST_CASE("a joint below 1 stays below 1, and 0, 1 and 2 are exact") {
+  const auto joint = [](float value) {
+    std::vector<float> values{value};
+    round_joint_damage(values);
+    return values.front();
+  };
+  for (float value : {0.0f, 1.0f, 2.0f}) CHECK(joint(value) == value);
+  CHECK(joint(std::nextafter(1.0f, 0.0f)) == 1.0f - 1.0f / 8192.0f);
+  float before = 0.0f;
+  for (float value = 1e-30f; value < 1.0f; value *= 1.0001f) {
+    const float kept = joint(value);
+    REQUIRE(kept < 1.0f);
+    REQUIRE(std::abs(kept - value) <= (value > 1.0f - 1.0f / 16384.0f ? 1.0f / 8192.0f : 1.0f / 16384.0f));
+    REQUIRE(kept >= before);
+    REQUIRE(joint(kept) == kept);
+    before = kept;
+  }
+  for (float value : {-1e-9f, 1.5f, std::nextafter(2.0f, 3.0f), std::nanf("")})
+    CHECK(std::bit_cast<std::uint32_t>(joint(value)) == std::bit_cast<std::uint32_t>(value));
+}

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/record/writer.hpp"
+#include "tests/record/sample_fdem.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/record/temporary_folder.hpp"
 
@@ -40,6 +41,16 @@ struct Written {
                        *std::max_element(last.begin(), last.end()),
                        std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size()));
   }
+};
+
+struct WrittenMesh {
+  test::TemporaryFolder folder;
+  Record record = as_stored(sample::fdem_record());
+  std::string path = folder.path() / "record.h5";
+
+  WrittenMesh() { write_record(record, path, Keeping::scratch).value(); }
+  const std::vector<float>& last() const { return record.fdem.damage.back(); }
+  long count(float damage) const { return std::count(last().begin(), last().end(), damage); }
 };
 
 bool skipped(int status, const std::string& text, const char* tool) {
@@ -102,6 +113,49 @@ TEST_CASE("h5dump reads every dataset through the stock filters") {
 TEST_CASE("ParaView opens a record as a time series") {
   const Written written;
   const auto [status, text] = run(fmt::format("pvpython {} {}", helper("stock_paraview.py"), written.expected()));
+  if (skipped(status, text, "pvpython")) return;
+  INFO(text);
+  CHECK(status == 0);
+}
+
+TEST_CASE("stock h5py reads an FDEM record and makes a table of edges of it") {
+  const WrittenMesh written;
+  const auto [status, text] =
+      run(fmt::format("{} {} {} {} {} {} {} {}", python_with("h5py"), helper("stock_h5py_fdem.py"), written.path,
+                      written.record.fdem.time.size(), written.last().size(), written.count(2.0f), written.count(1.0f), 0.25 * 0.2));
+  if (skipped(status, text, "h5py")) return;
+  INFO(text);
+  CHECK(status == 0);
+}
+
+TEST_CASE("ncdump sees the mesh, its edges and their damage over time") {
+  const WrittenMesh written;
+  const auto [status, text] = run("ncdump -h " + written.path);
+  if (skipped(status, text, "ncdump")) return;
+  INFO(text);
+  REQUIRE(status == 0);
+  for (const char* line :
+       {"time = 9 ;", "float damage(time, edge) ;", "double break_time(edge) ;", "byte edge_kind(edge) ;", "int edge(edge) ;",
+        "int tri_nodes(", "double node_xyz(", "break_time:units = \"s\" ;", "double friction_energy(step_time) ;"})
+    CHECK(text.find(line) != std::string::npos);
+  CHECK(run("ncdump " + written.path).first == 0);  // every value of every group
+}
+
+TEST_CASE("h5dump reads every dataset of an FDEM record through the stock filters") {
+  const WrittenMesh written;
+  const auto [status, text] = run("h5dump " + written.path);
+  if (skipped(status, text, "h5dump")) return;
+  CHECK(status == 0);
+  CHECK(text.find("DATASET \"edge_tris\"") != std::string::npos);
+  CHECK(text.find("h5dump error") == std::string::npos);
+}
+
+TEST_CASE("ParaView opens an FDEM record as a time series") {
+  const WrittenMesh written;
+  const auto& last = written.last();
+  const auto [status, text] = run(fmt::format("pvpython {} {} {} {:.17g} {} {:.9g}", helper("stock_paraview_fdem.py"), written.path,
+                                              written.record.fdem.time.size(), written.record.fdem.time.back(), last.size(),
+                                              std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size())));
   if (skipped(status, text, "pvpython")) return;
   INFO(text);
   CHECK(status == 0);

@@ -8,6 +8,7 @@
 
 #include "common/base/atomic_file.hpp"
 #include "common/record/writer.hpp"
+#include "tests/record/sample_fdem.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/record/temporary_folder.hpp"
 
@@ -101,6 +102,25 @@ TEST_CASE("show -o draws a picture") {
   const Files files;
   const std::string picture = files.folder.path() / "x.png";
   CHECK(fracfarm_run("show " + files.sound + " -o " + picture).status == 0);
+  CHECK(read_file(picture, 1 << 30).value().starts_with("\x89PNG"));
+}
+
+TEST_CASE("check and show take FDEM records: words, JSON and picture") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() / "mesh.h5", picture = folder.path() / "mesh.png";
+  const Record record = sample::fdem_record();
+  write_record(record, path, Keeping::scratch).value();
+  CHECK(fracfarm_run("check " + path).status == 0);
+  const Ended words = fracfarm_run("show " + path);
+  CHECK(words.status == 0);
+  for (const char* word : {"fdem", "triangles", "five_step", "drop10", "chosen", "criteria apart", "friction_energy"})
+    CHECK(words.out.find(word) != std::string::npos);
+  const auto json = nlohmann::json::parse(fracfarm_run("show --json " + path + " -o " + picture).out);
+  CHECK(json["failure_rule"] == "five_step");
+  CHECK(json["disagreement"].get<double>() == *record.failure_times[1].time - *record.failure_times[0].time);
+  CHECK(json["mesh"]["edges"] == record.fdem.mesh.edge_nodes.size());
+  CHECK(json["mesh"]["broken"].get<int>() > 0);
+  CHECK(json["frames"] == record.fdem.time.size());
   CHECK(read_file(picture, 1 << 30).value().starts_with("\x89PNG"));
 }
 

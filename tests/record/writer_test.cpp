@@ -9,6 +9,7 @@
 #include "common/base/hash.hpp"
 #include "common/record/reader.hpp"
 #include "common/record/seal.hpp"
+#include "tests/record/sample_fdem.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/record/temporary_folder.hpp"
 
@@ -56,6 +57,22 @@ TEST_CASE("records of any grid come back whole, chunk edges included") {
     const Record back = read_record_bytes(record_bytes(record).value()).value();
     CHECK(back.phase_field.psi == as_stored(record).phase_field.psi);
     CHECK(back.phase_field.psi_failure == as_stored(record).phase_field.psi_failure);
+  }
+}
+
+TEST_CASE("FDEM records of any mesh come back whole, chunk edges included") {
+  for (const sample::FdemSize size : {sample::FdemSize{10, 8, 2, 40}, {20, 16, 33, 60}, {220, 176, 2, 40}}) {
+    const Record record = as_stored(sample::fdem_record(size));
+    const Record back = read_record_bytes(record_bytes(record).value()).value();
+    CHECK(back.fdem.mesh == record.fdem.mesh);
+    CHECK(back.fdem.time == record.fdem.time);
+    CHECK(back.fdem.damage == record.fdem.damage);
+    CHECK(back.fdem.damage_initial == record.fdem.damage_initial);
+    CHECK(back.fdem.damage_failure == record.fdem.damage_failure);
+    CHECK(back.fdem.break_mode == record.fdem.break_mode);
+    const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    CHECK(std::equal(back.fdem.break_time.begin(), back.fdem.break_time.end(), record.fdem.break_time.begin(), same));
+    CHECK(back.phase_field.psi.empty());
   }
 }
 
