@@ -25,6 +25,25 @@ void add_choice(CLI::App& command, Choice& choice) {
   command.add_option("--jobs", choice.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
 }
 
+void add_fdem_choice(CLI::App& command, FdemChoice& choice) {
+  command.add_option("--materials", choice.materials, "Of the table")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"pbx", "shale", "tungsten", "pbx5"}))
+      ->capture_default_str();
+  command.add_option("--patterns", choice.patterns, "Patterns 1 ... of the seed")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  command.add_option("--seed", choice.seed, "Campaign seed of the patterns")->capture_default_str();
+  command.add_option("--jobs", choice.jobs, "Threads")->check(CLI::Range(1, 1024))->capture_default_str();
+}
+
+// A study of FDEM: its command, and what answers it.
+template <class Question>
+void add_fdem_study(CLI::App& app, std::string name, std::string words, Question& question, int (*answer)(const Question&), int& status) {
+  CLI::App* command = app.add_subcommand(std::move(name), std::move(words));
+  add_fdem_choice(*command, question.choice);
+  command->add_flag("--json", question.json, "Print one object");
+  command->final_callback([&question, answer, &status] { status = answer(question); });
+}
+
 }  // namespace
 }  // namespace fracfarm::studies
 
@@ -44,10 +63,15 @@ int main(int argc, char** argv) {
   add_choice(*rules_command, rule.choice);
   rules_command->add_option("--rules", rule.rules, "Some rules only")->delimiter(',')->check(CLI::IsMember(rule_names()));
   rules_command->add_flag("--json", rule.json, "Print one object");
+  int status = fracfarm::exit_ok;
+  FdemTiersQuestion tiers;
+  add_fdem_study(app, "fdem-tiers", "The cheaper tiers of FDEM against the reference tier; 1 where a pattern misses", tiers, fdem_tiers,
+                 status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? fracfarm::exit_ok : fracfarm::exit_bad_input;
   }
-  return step_command->parsed() ? time_step(step) : rules(rule);
+  if (step_command->parsed()) return time_step(step);
+  return rules_command->parsed() ? rules(rule) : status;
 }

@@ -1,6 +1,7 @@
 // The studies, each a question with its figures: run by fracfarm-study.
 #pragma once
 
+#include "tests/studies/fdem_study.hpp"
 #include "tests/studies/study.hpp"
 
 namespace fracfarm::studies {
@@ -25,5 +26,14 @@ struct RulesQuestion {
 };
 int rules(const RulesQuestion& question);
 std::vector<std::string> rule_names();
+
+// How far the cheaper tiers of FDEM are from the reference tier, and how much cheaper.
+struct FdemTiersQuestion {
+  FdemChoice choice;
+  double peak_limit = 0.015, drop_limit = 0.03, edges_limit = 0.12;  // of the fast tier
+  bool json = false;
+};
+// 0 where every pattern's fast run is within all three limits.
+int fdem_tiers(const FdemTiersQuestion& question);
 
 }  // namespace fracfarm::studies
