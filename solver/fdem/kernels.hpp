@@ -53,8 +53,8 @@ struct View {
   const Real *told, *told_velocity;  // [i][corner_count][l]: 1 where the velocity is told, and that velocity of the next half step
   Real* told_force;                  // [i][corner_count][l], N/m: internal force and extra
   // Joints.
-  const int *left_side, *right_side;  // [b][l], 3 t + k
-  const int *left_row, *right_row;    // [b][l], of `rows`
+  const int *left_row, *right_row;    // [b][l], places in `rows`
+  const int *left_slot, *right_slot;  // [b][l], places in `slots`
   const Real* length;                 // [b][l], m
   const Real* along;                  // [b][2][l], m: from the first node to the second, undeformed
   Real* damage;                       // [b][2][l], at the two points

@@ -162,6 +162,7 @@ void add_joint(const Body& body, Plan& plan, int edge) {
     plan.along[at] = b[0] - a[0], plan.along[at + lanes] = b[1] - a[1];
   }
   plan.left_row.push_back(row_of_side(plan.left_side.back())), plan.right_row.push_back(row_of_side(plan.right_side.back()));
+  plan.left_slot.push_back(4 * plan.left_side.back()), plan.right_slot.push_back(4 * plan.right_side.back());
 }
 
 void place_joints(const Body& body, const FdemSettings& settings, Plan& plan) {

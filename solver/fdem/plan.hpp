@@ -25,10 +25,11 @@ struct Plan {
   ContactSettings contact;
   std::vector<int> neighbour;  // by side 3 slot + k: the side across, -1 on the boundary
   // Joints.
-  int joints = 0;             // a multiple of `lanes`
-  std::vector<int> edge_of;   // by joint, -1: a pad
-  std::vector<int> joint_of;  // by edge, -1: none (a crack, or asleep)
-  std::vector<int> left_side, right_side, left_row, right_row;
+  int joints = 0;                          // a multiple of `lanes`
+  std::vector<int> edge_of;                // by joint, -1: a pad
+  std::vector<int> joint_of;               // by edge, -1: none (a crack, or asleep)
+  std::vector<int> left_side, right_side;  // by joint, 3 slot + k
+  std::vector<int> left_row, right_row, left_slot, right_slot;
   std::vector<double> length, along;  // as in View
   std::vector<law::Joint<double>> joint_laws;
   std::vector<int> joint_law_of_block;

@@ -54,7 +54,7 @@ View<Real> Fdem<Real>::view() const {
   v.plastic = s.plastic.data(), v.needs = scratch_.needs.data(), v.extra = s.extra.data();
   v.told_of_block = model_.told_of_block.data(), v.told = model_.told.data();
   v.told_velocity = scratch_.told_velocity.data(), v.told_force = scratch_.told_force.data();
-  v.left_side = plan_.left_side.data(), v.right_side = plan_.right_side.data();
+  v.left_slot = plan_.left_slot.data(), v.right_slot = plan_.right_slot.data();
   v.left_row = plan_.left_row.data(), v.right_row = plan_.right_row.data();
   v.length = model_.length.data(), v.along = model_.along.data();
   v.damage = s.damage.data(), v.opening = s.opening.data(), v.joint_state = s.joint_state.data();

@@ -94,16 +94,15 @@ struct Chunk {
 // The damage arithmetic of one register; replaces the springs' force where there is damage. The work that is gone in a step is
 // 1/2 (f0 delta1 - f1 delta0): the trapezoidal work less the growth of what is stored.
 template <class Curve>
-[[gnu::noinline]] unsigned follow_part(const View& view, int b, int s, const Sides& u, const Ends& opening, Lanes spring, Ends& force,
-                                       Lanes& gone) {
+INLINE unsigned follow_part(const View& view, int b, int s, const Sides& u, const Ends& opening, Lanes spring, Ends& force, Lanes& gone) {
   const Index joint = Index(b) * lanes + s * width;
   const Joint law = wide(view.joint_laws[view.joint_law_of_block[b]]);
   Real* damage = view.damage + Index(b) * 2 * lanes + s * width;
   Real* kept = view.opening + Index(b) * 4 * lanes + s * width;
   const Lanes damage_0 = load(damage), damage_1 = load(damage + lanes);
   const Followed now = follow<Curve>(law, midline(view, b, s, u), load(view.length + joint), opening, damage_0, damage_1);
-  const int* side = view.left_side + joint;
-  const Lanes4 slot = load_rows(LANE_AT { return view.slots + 4 * Index(side[l]); });
+  const int* slot_of = view.left_slot + joint;
+  const Lanes4 slot = load_rows(LANE_AT { return view.slots + slot_of[l]; });
   const Ends before{slot.a, slot.b, slot.c, slot.d};
   const bool followed = view.joint_state[b] & joint_followed;
   const Ends earlier = followed ? load_ends(kept) : opening_of(before, spring);
@@ -124,44 +123,68 @@ INLINE Sides load_sides(const View& view, int b, int s) {
 
 INLINE void store_sides(const View& view, int b, int s, const Ends& f) {
   const Index joint = Index(b) * lanes + s * width;
-  const int *left = view.left_side + joint, *right = view.right_side + joint;
+  const int *left = view.left_slot + joint, *right = view.right_slot + joint;
   Real* slots = view.slots;
-  store_rows(LANE_AT { return slots + 4 * Index(left[l]); }, {f.ax, f.az, f.bx, f.bz});
-  store_rows(LANE_AT { return slots + 4 * Index(right[l]); }, {-f.bx, -f.bz, -f.ax, -f.az});
+  store_rows(LANE_AT { return slots + left[l]; }, {f.ax, f.az, f.bx, f.bz});
+  store_rows(LANE_AT { return slots + right[l]; }, {-f.bx, -f.bz, -f.ax, -f.az});
+}
+
+INLINE Ends opening_between(const Sides& u) {
+  return {u.right.c - u.left.a, u.right.d - u.left.b, u.right.a - u.left.c, u.right.b - u.left.d};
+}
+
+INLINE Lanes spring_of(const View& view, const law::Joint<Real>& law, int b, int s) {
+  return Lanes(law.penalty * Real(1.0 / 6.0)) * load(view.length + Index(b) * lanes + s * width);
+}
+
+INLINE Ends spring_force(Lanes spring, const Ends& o) {
+  const Lanes x = o.ax + o.bx, z = o.az + o.bz;
+  return {spring * (o.ax + x), spring * (o.az + z), spring * (o.bx + x), spring * (o.bz + z)};
+}
+
+INLINE void end_part(const View& view, int b, int s, const Ends& opening, const Ends& force, Chunk& sums) {
+  store_sides(view, b, s, force);
+  sums.stored.part[s] = sums.stored.part[s] + dot(force, opening);
+}
+
+// The block again, with damage. Apart from the springs' loop, which then keeps everything in registers.
+template <class Curve>
+[[gnu::noinline]] void follow_block(const View& view, int b, Chunk& sums) {
+  const law::Joint<Real>& law = view.joint_laws[view.joint_law_of_block[b]];
+  unsigned after = joint_followed | (view.joint_state[b] & joint_damaged);
+  for (int s = 0; s < parts; ++s) {
+    const Sides u = load_sides(view, b, s);
+    const Ends opening = opening_between(u);
+    const Lanes spring = spring_of(view, law, b, s);
+    Ends force = spring_force(spring, opening);
+    Lanes gone;
+    after |= follow_part<Curve>(view, b, s, u, opening, spring, force, gone);
+    sums.fracture.part[s] = sums.fracture.part[s] + gone;
+    end_part(view, b, s, opening, force, sums);
+  }
+  view.joint_state[b] = static_cast<unsigned char>(after);
+}
+
+// True where an end of a joint is open past the smaller onset, in whatever direction.
+INLINE bool is_stretched(const law::Joint<Real>& law, const Ends (&opening)[parts]) {
+  const Real steepest = law.per_onset_n > law.per_onset_t ? law.per_onset_n : law.per_onset_t;
+  Lanes furthest(Real(0));
+#pragma GCC unroll 4
+  for (const Ends& o : opening) furthest = larger(furthest, larger(o.ax * o.ax + o.az * o.az, o.bx * o.bx + o.bz * o.bz));
+  return any(furthest * Lanes(steepest * steepest) > Lanes(Real(1)));
 }
 
 template <class Curve>
 INLINE void join_block(const View& view, int b, Chunk& sums) {
+  if (view.always_follow || (view.joint_state[b] & joint_damaged)) return follow_block<Curve>(view, b, sums);
   const law::Joint<Real>& law = view.joint_laws[view.joint_law_of_block[b]];
-  const Real steepest = law.per_onset_n > law.per_onset_t ? law.per_onset_n : law.per_onset_t;
-  Sides u[parts];
   Ends opening[parts];
-  Lanes furthest(Real(0));
 #pragma GCC unroll 4
-  for (int s = 0; s < parts; ++s) {
-    u[s] = load_sides(view, b, s);
-    opening[s] = {u[s].right.c - u[s].left.a, u[s].right.d - u[s].left.b, u[s].right.a - u[s].left.c, u[s].right.b - u[s].left.d};
-    const Ends& o = opening[s];
-    furthest = larger(furthest, larger(o.ax * o.ax + o.az * o.az, o.bx * o.bx + o.bz * o.bz));
-  }
-  const unsigned char before = view.joint_state[b];
-  const bool follows = view.always_follow || (before & joint_damaged) || any(furthest * Lanes(steepest * steepest) > Lanes(Real(1)));
-  unsigned after = before & joint_damaged;
+  for (int s = 0; s < parts; ++s) opening[s] = opening_between(load_sides(view, b, s));
+  if (is_stretched(law, opening)) return follow_block<Curve>(view, b, sums);
+  view.joint_state[b] = 0;
 #pragma GCC unroll 4
-  for (int s = 0; s < parts; ++s) {
-    const Ends& o = opening[s];
-    const Lanes spring = Lanes(law.penalty / Real(6)) * load(view.length + Index(b) * lanes + s * width);
-    const Lanes x = o.ax + o.bx, z = o.az + o.bz;
-    Ends force{spring * (o.ax + x), spring * (o.az + z), spring * (o.bx + x), spring * (o.bz + z)};
-    if (follows) {
-      Lanes gone;
-      after |= follow_part<Curve>(view, b, s, u[s], o, spring, force, gone) | unsigned(joint_followed);
-      sums.fracture.part[s] = sums.fracture.part[s] + gone;
-    }
-    store_sides(view, b, s, force);
-    sums.stored.part[s] = sums.stored.part[s] + dot(force, o);
-  }
-  if (after != before) view.joint_state[b] = static_cast<unsigned char>(after);
+  for (int s = 0; s < parts; ++s) end_part(view, b, s, opening[s], spring_force(spring_of(view, law, b, s), opening[s]), sums);
 }
 
 template <class Curve>

@@ -33,8 +33,6 @@ inline constexpr int width = register_bytes / int(sizeof(Real)) > 4 ? register_b
 inline constexpr int parts = lanes / width;  // registers in a block
 
 typedef Real Raw __attribute__((vector_size(width * sizeof(Real))));
-typedef Real Four __attribute__((vector_size(4 * sizeof(Real))));
-typedef Real Eight __attribute__((vector_size(8 * sizeof(Real))));
 
 #ifdef FRACFARM_MASKS
 using RawMask = std::conditional_t<width == 16, __mmask16, __mmask8>;
@@ -157,60 +155,55 @@ INLINE Four4 transposed(const Four4& z) {
   }
 }
 
-INLINE Four four(const Real* from) {
-  Four raw;
-  __builtin_memcpy(&raw, from, sizeof raw);
-  return raw;
+// Of the branch that is compiled for the other number type.
+template <class Number>
+INLINE const Number* as(const Real* p) {
+  return reinterpret_cast<const Number*>(p);
 }
-INLINE void keep_four(Real* to, Four a) { __builtin_memcpy(to, &a, sizeof a); }
+template <class Number>
+INLINE Number* as(Real* p) {
+  return reinterpret_cast<Number*>(p);
+}
 
-// Four numbers at each of at(first), at(first + 4), ... side by side in a register.
-template <int groups>
-struct Wide;
-template <>
-struct Wide<1> {
-  using type = Four;
-};
-template <>
-struct Wide<2> {
-  using type = Eight;
-};
-template <>
-struct Wide<4> {
-  typedef Real type __attribute__((vector_size(16 * sizeof(Real))));
-};
+// Four numbers at each of at(first), at(first + 4), ... side by side in a register, and back.
+template <class At>
+INLINE Raw load_quads(const At& at, int first) {
+#ifdef FRACFARM_MASKS
+  if constexpr (width == 16) {
+    const __m256 low =
+        _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(as<float>(at(first)))), _mm_loadu_ps(as<float>(at(first + 4))), 1);
+    const __m256 high =
+        _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(as<float>(at(first + 8)))), _mm_loadu_ps(as<float>(at(first + 12))), 1);
+    return Raw(_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1));
+  } else {
+    return Raw(
+        _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(as<double>(at(first)))), _mm256_loadu_pd(as<double>(at(first + 4))), 1));
+  }
+#else
+  Raw raw;
+  for (int group = 0; group < width / 4; ++group)
+    __builtin_memcpy(reinterpret_cast<char*>(&raw) + group * 4 * int(sizeof(Real)), at(first + 4 * group), 4 * sizeof(Real));
+  return raw;
+#endif
+}
 
-template <int groups, class At, class All = typename Wide<groups>::type>
-struct Quads;
-template <class At, class All>
-struct Quads<1, At, All> {
-  static INLINE All get(const At& at, int first) { return four(at(first)); }
-  static INLINE void put(const At& at, int first, All a) { keep_four(at(first), a); }
-};
-template <class At, class All>
-struct Quads<2, At, All> {
-  static INLINE All get(const At& at, int first) {
-    return __builtin_shufflevector(four(at(first)), four(at(first + 4)), 0, 1, 2, 3, 4, 5, 6, 7);
+template <class At>
+INLINE void store_quads(const At& at, int first, Raw a) {
+#ifdef FRACFARM_MASKS
+  if constexpr (width == 16) {
+    _mm_storeu_ps(as<float>(at(first)), _mm512_castps512_ps128(__m512(a)));
+    _mm_storeu_ps(as<float>(at(first + 4)), _mm512_extractf32x4_ps(__m512(a), 1));
+    _mm_storeu_ps(as<float>(at(first + 8)), _mm512_extractf32x4_ps(__m512(a), 2));
+    _mm_storeu_ps(as<float>(at(first + 12)), _mm512_extractf32x4_ps(__m512(a), 3));
+  } else {
+    _mm256_storeu_pd(as<double>(at(first)), _mm512_castpd512_pd256(__m512d(a)));
+    _mm256_storeu_pd(as<double>(at(first + 4)), _mm512_extractf64x4_pd(__m512d(a), 1));
   }
-  static INLINE void put(const At& at, int first, All a) {
-    keep_four(at(first), __builtin_shufflevector(a, a, 0, 1, 2, 3));
-    keep_four(at(first + 4), __builtin_shufflevector(a, a, 4, 5, 6, 7));
-  }
-};
-template <class At, class All>
-struct Quads<4, At, All> {
-  static INLINE All get(const At& at, int first) {
-    const Eight low = __builtin_shufflevector(four(at(first)), four(at(first + 4)), 0, 1, 2, 3, 4, 5, 6, 7);
-    const Eight high = __builtin_shufflevector(four(at(first + 8)), four(at(first + 12)), 0, 1, 2, 3, 4, 5, 6, 7);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  }
-  static INLINE void put(const At& at, int first, All a) {
-    keep_four(at(first), __builtin_shufflevector(a, a, 0, 1, 2, 3));
-    keep_four(at(first + 4), __builtin_shufflevector(a, a, 4, 5, 6, 7));
-    keep_four(at(first + 8), __builtin_shufflevector(a, a, 8, 9, 10, 11));
-    keep_four(at(first + 12), __builtin_shufflevector(a, a, 12, 13, 14, 15));
-  }
-};
+#else
+  for (int group = 0; group < width / 4; ++group)
+    __builtin_memcpy(at(first + 4 * group), reinterpret_cast<const char*>(&a) + group * 4 * int(sizeof(Real)), 4 * sizeof(Real));
+#endif
+}
 
 struct Lanes4 {
   Lanes a, b, c, d;
@@ -219,15 +212,13 @@ struct Lanes4 {
 // Four consecutive numbers at(l) of each lane l, as four registers, and back.
 template <class At>
 INLINE Lanes4 load_rows(const At& at) {
-  using Q = Quads<width / 4, At>;
-  const Four4 t = transposed({Q::get(at, 0), Q::get(at, 1), Q::get(at, 2), Q::get(at, 3)});
+  const Four4 t = transposed({load_quads(at, 0), load_quads(at, 1), load_quads(at, 2), load_quads(at, 3)});
   return {t.a, t.b, t.c, t.d};
 }
 template <class At>
 INLINE void store_rows(const At& at, const Lanes4& x) {
-  using Q = Quads<width / 4, At>;
   const Four4 t = transposed({x.a.raw, x.b.raw, x.c.raw, x.d.raw});
-  Q::put(at, 0, t.a), Q::put(at, 1, t.b), Q::put(at, 2, t.c), Q::put(at, 3, t.d);
+  store_quads(at, 0, t.a), store_quads(at, 1, t.b), store_quads(at, 2, t.c), store_quads(at, 3, t.d);
 }
 #define LANE_AT [=](int l) __attribute__((always_inline))
 
