@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "solver/watch.hpp"
+#include "solver/through_crack_watch.hpp"
 #include "tests/solver/scenes.hpp"
 
 using namespace fracfarm;
