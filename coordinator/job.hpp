@@ -43,6 +43,7 @@ struct JobClass {
   std::string load;
   auto operator<=>(const JobClass&) const = default;
 };
+std::string text_of(const JobClass& job_class);  // "phase_field pbx uniaxial"
 
 // What a DONE job came to. A rejected one has no record: its reason is the rule.
 struct Outcome {
@@ -73,14 +74,15 @@ struct Job {
   int attempts = 0;           // leases given
   std::int64_t forgiven = 0;  // faults of the history up to here no longer count: a person said retry
   double step_scale = 1.0;
-  double wait_s = 0.0;      // RETRY_WAIT
-  wire::LeaseId lease;      // the current one where LEASED, else the last
-  std::int64_t worker = 0;  // who holds it, or who did it last; 0: nobody yet
-  double leased_at = 0.0;   // wall clock
+  std::uint64_t memory_floor = 0;  // bytes that a slot must have more than; 0: any
+  double wait_s = 0.0;             // RETRY_WAIT
+  wire::LeaseId lease;             // the current one where LEASED, else the last
+  std::int64_t worker = 0;         // who holds it, or who did it last; 0: nobody yet
+  double leased_at = 0.0;          // wall clock
   std::optional<Outcome> outcome;
 };
 
-// A job as it is submitted.
+// A job as the ledger first hears of it.
 struct NewJob {
   std::string key;
   std::int64_t campaign = 0;
@@ -88,6 +90,32 @@ struct NewJob {
   JobClass job_class;
   std::string crack_set;
   std::uint64_t sample_id = 0;
+  std::int64_t id = 0;  // 0: the next free one
+  State state = State::ready;
+  int priority = 0;
+};
+
+// Which jobs a series is: those of one combination of material, load and settings of a campaign's block.
+struct SeriesPlace {
+  std::int64_t campaign = 0;
+  std::size_t block = 0;
+  std::uint64_t variant = 0;
+};
+
+// Jobs of one class of a campaign that nobody has touched: ids next, next + stride, ..., last. They have no row of their own.
+struct Lane {
+  std::int64_t id = 0;
+  std::int64_t campaign = 0;
+  std::int64_t first_id = 0;  // of the campaign: position = job id - first_id
+  JobClass job_class;
+  State state = State::ready;  // READY, HELD or CANCELLED
+  int priority = 0;
+  std::int64_t next = 0;
+  std::int64_t last = 0;
+  std::int64_t stride = 1;
+
+  bool has(std::int64_t job) const { return job >= next && job <= last && (job - next) % stride == 0; }
+  std::uint64_t size() const { return static_cast<std::uint64_t>((last - next) / stride + 1); }
 };
 
 }  // namespace fracfarm

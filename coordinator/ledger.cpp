@@ -11,10 +11,6 @@
 namespace fracfarm {
 namespace {
 
-// STRICT text columns take any bytes; what comes from outside is kept to a bounded, printable length.
-constexpr std::size_t longest_text = 4000;
-std::string bounded(const std::string& text) { return text.substr(0, longest_text); }
-
 std::string random_id() {
   std::random_device source;
   return fmt::format("{:08x}{:08x}", source(), source());
@@ -22,10 +18,11 @@ std::string random_id() {
 
 Result<void> prepare(Database& database) {
   database.script(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF; PRAGMA cache_size = "
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF; PRAGMA cache_size = "
       "-65536;"
       "PRAGMA temp_store = MEMORY;");
   if (Result<void> done = migrate(database); !done) return done;
+  database.script("PRAGMA foreign_keys = ON");  // a migration rebuilds tables that others point at
   database.run("INSERT INTO meta VALUES('farm_id', ?1) ON CONFLICT DO NOTHING", random_id());
   return {};
 }
@@ -80,22 +77,13 @@ void Ledger::advance_campaign(std::int64_t campaign, std::uint64_t expanded, std
   database_.run("UPDATE campaigns SET expanded = ?2, shared = shared + ?3 WHERE id = ?1", campaign, expanded, newly_shared);
 }
 
-bool Ledger::add_job(const NewJob& job) {
-  const std::string key = bytes_of_hex(job.key);
-  return database_.run(
-             "INSERT INTO jobs(key, campaign, position, method, material, load, crack_set, sample_id, state)"
-             " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, 'READY') ON CONFLICT(key) DO NOTHING",
-             Blob{key}, job.campaign, job.position, job.job_class.method, job.job_class.material, job.job_class.load, job.crack_set,
-             job.sample_id) == 1;
-}
-
 std::int64_t Ledger::register_worker(const std::string& peer, const wire::Hello& hello, double wall_s) {
   database_.run("UPDATE workers SET ended_at = ?3 WHERE peer = ?1 AND instance <> ?2 AND ended_at IS NULL", peer, hello.instance, wall_s);
   database_.run(
-      "INSERT INTO workers(peer, instance, node, slots, memory_bytes, build_id, began_at) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"
+      "INSERT INTO workers(peer, instance, node, slots, memory_bytes, build_id, began_at, node_type) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"
       " ON CONFLICT(peer, instance) DO UPDATE SET ended_at = NULL",
       peer, bounded(hello.instance), bounded(hello.node), hello.slots, static_cast<std::int64_t>(hello.memory_bytes),
-      bounded(hello.build_id), wall_s);
+      bounded(hello.build_id), wall_s, node_type_of(hello.slots, hello.memory_bytes));
   Rows rows = database_.query("SELECT id FROM workers WHERE peer = ?1 AND instance = ?2", peer, bounded(hello.instance));
   rows.next();
   return rows.integer(0);
@@ -118,11 +106,20 @@ void Ledger::adopt(std::int64_t job, std::int64_t worker) {
   database_.run("UPDATE jobs SET worker = ?2 WHERE id = ?1 AND state = 'LEASED'", job, worker);
 }
 
-std::int64_t Ledger::shard_id(const std::string& name) {
-  database_.run("INSERT INTO shards(name) VALUES(?1) ON CONFLICT DO NOTHING", name);
-  Rows rows = database_.query("SELECT id FROM shards WHERE name = ?1", name);
+std::int64_t Ledger::numbered(std::map<std::string, std::int64_t>& known, const std::string& name, std::string_view insert,
+                              std::string_view select) {
+  if (const auto found = known.find(name); found != known.end()) return found->second;
+  database_.run(insert, name);
+  Rows rows = database_.query(select, name);
   rows.next();
-  return rows.integer(0);
+  return known[name] = rows.integer(0);
+}
+
+std::int64_t Ledger::shard_id(const std::string& name) {
+  return numbered(shards_, name, "INSERT INTO shards(name) VALUES(?1) ON CONFLICT DO NOTHING", "SELECT id FROM shards WHERE name = ?1");
+}
+std::int64_t Ledger::rule_id(const std::string& name) {
+  return numbered(rules_, name, "INSERT INTO rules(name) VALUES(?1) ON CONFLICT DO NOTHING", "SELECT id FROM rules WHERE name = ?1");
 }
 
 void Ledger::complete(const Job& job, const Outcome& outcome, wire::LeaseId lease, std::int64_t worker) {
@@ -132,24 +129,23 @@ void Ledger::complete(const Job& job, const Outcome& outcome, wire::LeaseId leas
   const auto kept_digest = has_record ? std::optional(Blob{digest}) : std::nullopt;
   database_.run(
       "UPDATE jobs SET state = 'DONE', wait_s = NULL, lease_epoch = ?2, lease_counter = ?3, worker = nullif(?4, 0), verdict = ?5, "
-      "time_to_failure = "
-      "?6,"
-      " failure_rule = ?7, peak_stress = ?8, steps = ?9, cpu_s = ?10, wall_s = ?11, done_at = ?12, shard = nullif(?13, 0), offset = ?14, "
+      "time_to_failure = ?6, rule = ?7, peak_stress = ?8, steps = ?9, cpu_s = ?10, wall_s = ?11, done_at = ?12, shard = nullif(?13, 0), "
+      "offset = ?14, "
       "length = "
       "?15, sha256 = ?16"
       " WHERE id = ?1",
-      job.id, lease.epoch, lease.counter, worker, name_of(outcome.verdict), outcome.time_to_failure, bounded(outcome.failure_rule),
+      job.id, lease.epoch, lease.counter, worker, name_of(outcome.verdict), outcome.time_to_failure, rule_id(bounded(outcome.failure_rule)),
       outcome.peak_stress, outcome.steps, outcome.cpu_s, outcome.wall_s, outcome.done_at, shard, outcome.offset, outcome.length,
       kept_digest);
   database_.run("UPDATE workers SET done = done + 1 WHERE id = ?1", worker);
-  if (has_record) learn(job, outcome);
+  if (has_record) learn(job, outcome, worker);
 }
 
-void Ledger::learn(const Job& job, const Outcome& outcome) {
+void Ledger::learn(const Job& job, const Outcome& outcome, std::int64_t worker) {
   database_.run(
-      "INSERT INTO durations VALUES(?1, ?2, ?3, ?4, 1, ?5, ?6)"
+      "INSERT INTO durations VALUES(?1, coalesce((SELECT node_type FROM workers WHERE id = ?2), ''), ?3, 1, ?4, ?5)"
       " ON CONFLICT DO UPDATE SET n = n + 1, wall_s = wall_s + excluded.wall_s, bytes = bytes + excluded.bytes",
-      job.job_class.method, job.job_class.material, job.job_class.load, duration_bin(outcome.wall_s), outcome.wall_s, outcome.length);
+      class_id(job.job_class), worker, duration_bin(outcome.wall_s), outcome.wall_s, outcome.length);
 }
 
 void Ledger::record_attempt(const Job& job, const Attempt& attempt, double wall_s) {
@@ -162,22 +158,37 @@ void Ledger::record_attempt(const Job& job, const Attempt& attempt, double wall_
 }
 
 void Ledger::make_ready(std::int64_t job) { database_.run("UPDATE jobs SET state = 'READY', wait_s = NULL WHERE id = ?1", job); }
-void Ledger::make_wait(std::int64_t job, double wait_s, double step_scale) {
-  database_.run("UPDATE jobs SET state = 'RETRY_WAIT', wait_s = ?2, step_scale = ?3 WHERE id = ?1", job, wait_s, step_scale);
+void Ledger::make_wait(std::int64_t job, double wait_s, double step_scale, std::uint64_t memory_floor) {
+  database_.run("UPDATE jobs SET state = 'RETRY_WAIT', wait_s = ?2, step_scale = ?3, memory_floor = ?4 WHERE id = ?1", job, wait_s,
+                step_scale, memory_floor);
 }
 void Ledger::quarantine(std::int64_t job) { database_.run("UPDATE jobs SET state = 'QUARANTINED', wait_s = NULL WHERE id = ?1", job); }
 void Ledger::cancel(std::int64_t job) {
   database_.run("UPDATE jobs SET state = 'CANCELLED', wait_s = NULL WHERE id = ?1 AND state <> 'DONE'", job);
 }
+void Ledger::hold(std::int64_t job) {
+  database_.run("UPDATE jobs SET state = 'HELD', wait_s = NULL WHERE id = ?1 AND state IN ('READY', 'RETRY_WAIT')", job);
+}
+void Ledger::prioritize(std::int64_t job, int priority) { database_.run("UPDATE jobs SET priority = ?2 WHERE id = ?1", job, priority); }
+
 void Ledger::forgive(std::int64_t job) {
   database_.run(
-      "UPDATE jobs SET state = 'READY', wait_s = NULL, step_scale = 1, forgiven = (SELECT coalesce(max(id), 0) FROM attempts WHERE job = "
+      "UPDATE jobs SET state = 'READY', wait_s = NULL, step_scale = 1, memory_floor = 0, forgiven = (SELECT coalesce(max(id), 0) FROM "
+      "attempts WHERE job = "
       "?1) WHERE id = ?1",
       job);
 }
 
-void Ledger::raise_nondeterminism(std::int64_t job, const std::string& message, double wall_s) {
-  database_.run("INSERT INTO alarms(kind, job, message, raised_at) VALUES('NONDETERMINISM', ?1, ?2, ?3)", job, bounded(message), wall_s);
+std::string text_of(const JobClass& it) { return fmt::format("{} {} {}", it.method, it.material, it.load); }
+
+std::string node_type_of(int slots, std::uint64_t memory_bytes) {
+  return fmt::format("{} slots, {} GB", slots, (memory_bytes + (std::uint64_t{1} << 29)) >> 30);
+}
+
+// STRICT text columns take any bytes; what comes from outside is kept to a bounded length.
+std::string bounded(const std::string& text) {
+  constexpr std::size_t longest_text = 4000;
+  return text.substr(0, longest_text);
 }
 
 std::string bytes_of_hex(std::string_view hex) {

@@ -7,12 +7,11 @@
 namespace fracfarm {
 namespace {
 
-#define JOB_COLUMNS                                                                                                                     \
-  "jobs.id, key, campaign, position, method, material, load, crack_set, sample_id, state, priority, attempts, forgiven, step_scale, "   \
-  "wait_s, lease_epoch, "                                                                                                               \
-  "lease_counter, worker, leased_at, verdict, time_to_failure, failure_rule, peak_stress, steps, cpu_s, wall_s, done_at, shards.name, " \
-  "offset, length, sha256"
-#define FROM_JOBS " FROM jobs LEFT JOIN shards ON shards.id = jobs.shard "
+#define JOB_COLUMNS                                                                                                                  \
+  "jobs.id, key, campaign, position, method, material, load, oblique, sample_id, state, priority, attempts, forgiven, step_scale, "  \
+  "wait_s, lease_epoch, lease_counter, worker, leased_at, verdict, time_to_failure, rules.name, peak_stress, steps, cpu_s, wall_s, " \
+  "done_at, shards.name, offset, length, sha256, memory_floor"
+#define FROM_JOBS " FROM jobs JOIN classes ON classes.id = class LEFT JOIN rules ON rules.id = rule LEFT JOIN shards ON shards.id = shard "
 
 Outcome outcome_of(const Rows& rows) {
   Outcome outcome;
@@ -38,7 +37,7 @@ Job job_of(const Rows& rows) {
   job.campaign = rows.integer(2);
   job.position = static_cast<std::uint64_t>(rows.integer(3));
   job.job_class = {rows.text(4), rows.text(5), rows.text(6)};
-  job.crack_set = rows.text(7);
+  job.crack_set = rows.integer(7) ? "oblique" : "orthogonal";
   job.sample_id = static_cast<std::uint64_t>(rows.integer(8));
   job.state = state_by_name(rows.text(9)).value();
   job.priority = static_cast<int>(rows.integer(10));
@@ -49,6 +48,7 @@ Job job_of(const Rows& rows) {
   job.lease = {static_cast<std::uint64_t>(rows.integer(15)), static_cast<std::uint64_t>(rows.integer(16))};
   job.worker = rows.integer(17);
   job.leased_at = rows.real(18);
+  job.memory_floor = static_cast<std::uint64_t>(rows.integer(31));
   if (!rows.null(19)) job.outcome = outcome_of(rows);
   return job;
 }
@@ -71,8 +71,10 @@ CampaignRow campaign_of(const Rows& rows) {
           rows.text(3),
           static_cast<std::uint64_t>(rows.integer(4)),
           static_cast<std::uint64_t>(rows.integer(5)),
-          static_cast<std::uint64_t>(rows.integer(6))};
+          static_cast<std::uint64_t>(rows.integer(6)),
+          rows.integer(7)};
 }
+#define CAMPAIGN_COLUMNS "id, name, text, build_id, total, expanded, shared, first_id"
 
 std::vector<CountRow> counts_of(Rows rows) {
   std::vector<CountRow> counts;
@@ -85,19 +87,6 @@ std::vector<CountRow> counts_of(Rows rows) {
   return counts;
 }
 
-WorkerRow worker_of(const Rows& rows) {
-  return {rows.integer(0),
-          rows.text(1),
-          rows.text(2),
-          rows.text(3),
-          static_cast<int>(rows.integer(4)),
-          rows.integer(5) != 0,
-          static_cast<std::uint64_t>(rows.integer(6)),
-          static_cast<std::uint64_t>(rows.integer(7)),
-          rows.real(8)};
-}
-#define WORKER_COLUMNS "id, peer, instance, node, slots, draining, done, faults, began_at"
-
 }  // namespace
 
 std::string meta_value(Database& ledger, const std::string& name) {
@@ -107,38 +96,41 @@ std::string meta_value(Database& ledger, const std::string& name) {
 
 std::vector<CampaignRow> campaign_rows(Database& ledger) {
   std::vector<CampaignRow> list;
-  Rows rows = ledger.query("SELECT id, name, text, build_id, total, expanded, shared FROM campaigns ORDER BY id");
+  Rows rows = ledger.query("SELECT " CAMPAIGN_COLUMNS " FROM campaigns ORDER BY id");
   while (rows.next()) list.push_back(campaign_of(rows));
   return list;
 }
 
 std::optional<CampaignRow> campaign_row(Database& ledger, std::int64_t id) {
-  Rows rows = ledger.query("SELECT id, name, text, build_id, total, expanded, shared FROM campaigns WHERE id = ?1", id);
-  if (!rows.next()) return std::nullopt;
-  return campaign_of(rows);
-}
-
-std::optional<CampaignRow> next_unexpanded(Database& ledger) {
-  Rows rows =
-      ledger.query("SELECT id, name, text, build_id, total, expanded, shared FROM campaigns WHERE expanded < total ORDER BY id LIMIT 1");
+  Rows rows = ledger.query("SELECT " CAMPAIGN_COLUMNS " FROM campaigns WHERE id = ?1", id);
   if (!rows.next()) return std::nullopt;
   return campaign_of(rows);
 }
 
 std::vector<CountRow> count_rows(Database& ledger) {
   return counts_of(
-      ledger.query("SELECT campaign, state, verdict, method, material, load, n FROM counts WHERE n > 0 ORDER BY 1, 2, 3, 4, 5, 6"));
+      ledger.query("SELECT campaign, state, verdict, method, material, load, n FROM counts JOIN classes ON classes.id = class WHERE n > 0"
+                   " ORDER BY 1, 2, 3, 4, 5, 6"));
 }
 std::vector<CountRow> recount_rows(Database& ledger) {
   return counts_of(
-      ledger.query("SELECT campaign, state, coalesce(verdict, ''), method, material, load, count(*) FROM jobs GROUP BY 1, 2, 3, 4, 5, 6"
-                   " ORDER BY 1, 2, 3, 4, 5, 6"));
+      ledger.query("SELECT campaign, state, verdict, method, material, load, sum(n) FROM"
+                   " (SELECT campaign, state, coalesce(verdict, '') AS verdict, class, count(*) AS n FROM jobs GROUP BY 1, 2, 3, 4"
+                   "  UNION ALL SELECT campaign, state, '', class, (last - next) / stride + 1 FROM lanes)"
+                   " JOIN classes ON classes.id = class GROUP BY 1, 2, 3, 4, 5, 6 ORDER BY 1, 2, 3, 4, 5, 6"));
 }
 
 std::map<std::string, std::uint64_t> fault_counts(Database& ledger) {
   std::map<std::string, std::uint64_t> counts;
-  Rows rows = ledger.query("SELECT fault, n FROM fault_counts");
+  Rows rows = ledger.query("SELECT fault, sum(n) FROM fault_tally GROUP BY fault");
   while (rows.next()) counts[rows.text(0)] = static_cast<std::uint64_t>(rows.integer(1));
+  return counts;
+}
+
+std::map<JobClass, std::map<std::string, std::uint64_t>> faults_by_class(Database& ledger) {
+  std::map<JobClass, std::map<std::string, std::uint64_t>> counts;
+  Rows rows = ledger.query("SELECT method, material, load, fault, n FROM fault_tally JOIN classes ON classes.id = class");
+  while (rows.next()) counts[{rows.text(0), rows.text(1), rows.text(2)}][rows.text(3)] = static_cast<std::uint64_t>(rows.integer(4));
   return counts;
 }
 
@@ -148,7 +140,7 @@ std::optional<Job> job_by_id(Database& ledger, std::int64_t id) {
 
 std::optional<Job> job_by_key(Database& ledger, const std::string& hex_key) {
   const std::string key = bytes_of_hex(hex_key);
-  return first_job(ledger.query("SELECT " JOB_COLUMNS FROM_JOBS "WHERE key = ?1", Blob{key}));
+  return first_job(ledger.query("SELECT " JOB_COLUMNS FROM_JOBS "WHERE substr(key, 1, 16) = substr(?1, 1, 16) AND key = ?1", Blob{key}));
 }
 
 std::optional<Job> job_by_lease(Database& ledger, wire::LeaseId lease) {
@@ -161,8 +153,10 @@ std::vector<Job> jobs_by_key_prefix(Database& ledger, const std::string& hex_pre
   const std::string low = bytes_of_hex(hex_prefix + (odd ? "0" : "")),
                     high = bytes_of_hex(hex_prefix + (odd ? "f" : "")) + std::string(32, '\xff');
   if (low.empty()) return {};
-  return all_jobs(
-      ledger.query("SELECT " JOB_COLUMNS FROM_JOBS "WHERE key >= ?1 AND key <= ?2 ORDER BY key LIMIT ?3", Blob{low}, Blob{high}, limit));
+  return all_jobs(ledger.query("SELECT " JOB_COLUMNS FROM_JOBS
+                               "WHERE substr(key, 1, 16) BETWEEN substr(?1, 1, 16) AND substr(?2, 1, 16) AND key BETWEEN ?1 AND ?2"
+                               " ORDER BY substr(key, 1, 16) LIMIT ?3",
+                               Blob{low}, Blob{high}, limit));
 }
 
 // Scans where the state is not one of the few that have an index; `limit` ends it early.
@@ -171,10 +165,12 @@ std::vector<Job> jobs_where(Database& ledger, const JobFilter& filter) {
   if (filter.state) sql += fmt::format(" AND state = '{}'", state_row(*filter.state).name);
   if (!filter.material.empty()) sql += " AND material = ?2";
   if (!filter.load.empty()) sql += " AND load = ?3";
+  if (!filter.method.empty()) sql += " AND method = ?6";
   if (!filter.fault.empty()) sql += " AND ?4 = (SELECT fault FROM attempts WHERE job = jobs.id ORDER BY attempts.id DESC LIMIT 1)";
   if (!filter.campaign.empty()) sql += " AND campaign IN (SELECT id FROM campaigns WHERE name = ?5)";
-  sql += " ORDER BY jobs.id LIMIT ?6";
-  return all_jobs(ledger.query(sql, filter.after, filter.material, filter.load, filter.fault, filter.campaign, filter.limit));
+  sql += " ORDER BY jobs.id LIMIT ?7";
+  return all_jobs(
+      ledger.query(sql, filter.after, filter.material, filter.load, filter.fault, filter.campaign, filter.method, filter.limit));
 }
 
 std::vector<Job> leased_jobs(Database& ledger) { return all_jobs(ledger.query("SELECT " JOB_COLUMNS FROM_JOBS "WHERE state = 'LEASED'")); }
@@ -195,63 +191,6 @@ std::vector<Job> ready_jobs(Database& ledger, const ClaimCursor& after, int limi
                                "WHERE state = 'READY' AND priority <= ?1 AND (priority < ?1 OR jobs.id > ?2)"
                                " ORDER BY priority DESC, jobs.id LIMIT ?3",
                                after.priority, after.id, limit));
-}
-
-std::vector<AttemptRow> attempts_of(Database& ledger, std::int64_t job) {
-  std::vector<AttemptRow> list;
-  Rows rows = ledger.query(
-      "SELECT attempts.id, job, attempt, fault, node, peer, signature, message, attempts.began_at, attempts.ended_at"
-      " FROM attempts LEFT JOIN workers ON workers.id = attempts.worker WHERE job = ?1 ORDER BY attempts.id",
-      job);
-  while (rows.next())
-    list.push_back({rows.integer(0), rows.integer(1), static_cast<int>(rows.integer(2)), rows.text(3), rows.text(4), rows.text(5),
-                    rows.text(6), rows.text(7), rows.real(8), rows.real(9)});
-  return list;
-}
-
-std::vector<WorkerRow> open_workers(Database& ledger) {
-  std::vector<WorkerRow> list;
-  Rows rows = ledger.query("SELECT " WORKER_COLUMNS " FROM workers WHERE ended_at IS NULL ORDER BY peer");
-  while (rows.next()) list.push_back(worker_of(rows));
-  return list;
-}
-
-std::optional<WorkerRow> worker_row(Database& ledger, std::int64_t id) {
-  Rows rows = ledger.query("SELECT " WORKER_COLUMNS " FROM workers WHERE id = ?1", id);
-  if (!rows.next()) return std::nullopt;
-  return worker_of(rows);
-}
-
-std::vector<AlarmRow> alarm_rows(Database& ledger, int limit) {
-  std::vector<AlarmRow> list;
-  Rows rows = ledger.query("SELECT kind, job, message, raised_at FROM alarms ORDER BY id DESC LIMIT ?1", limit);
-  while (rows.next()) list.push_back({rows.text(0), rows.integer(1), rows.text(2), rows.real(3)});
-  return list;
-}
-
-std::map<JobClass, Learned> learned_times(Database& ledger) {
-  std::map<JobClass, Learned> learned;
-  std::map<JobClass, std::vector<std::pair<int, std::uint64_t>>> bins;
-  Rows rows = ledger.query("SELECT method, material, load, bin, n, wall_s, bytes FROM durations ORDER BY method, material, load, bin");
-  while (rows.next()) {
-    const JobClass job_class{rows.text(0), rows.text(1), rows.text(2)};
-    const auto n = static_cast<std::uint64_t>(rows.integer(4));
-    Learned& entry = learned[job_class];
-    entry.n += n;
-    entry.mean_s += rows.real(5);
-    entry.mean_bytes += rows.real(6);
-    bins[job_class].emplace_back(static_cast<int>(rows.integer(3)), n);
-  }
-  for (auto& [job_class, entry] : learned) {
-    entry.mean_s /= static_cast<double>(entry.n);
-    entry.mean_bytes /= static_cast<double>(entry.n);
-    std::uint64_t seen = 0;
-    for (const auto& [bin, n] : bins[job_class]) {
-      entry.p99_s = duration_bin_top(bin);
-      if (100 * (seen += n) >= 99 * entry.n) break;
-    }
-  }
-  return learned;
 }
 
 }  // namespace fracfarm

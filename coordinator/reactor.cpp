@@ -9,6 +9,12 @@ namespace fracfarm {
 namespace {
 
 constexpr std::size_t longest_name = 128;
+constexpr int most_rechecks = 1000000;  // under way at once: there is no limit
+
+bool writes(const std::string& verb) {
+  const auto rows = requests();
+  return std::any_of(rows.begin(), rows.end(), [&](const RequestRow& row) { return row.verb == verb && row.writes; });
+}
 
 wire::Reply refuse(std::string reason) { return wire::Refusal{std::move(reason)}; }
 
@@ -23,14 +29,33 @@ Reactor::Reactor(Ledger& ledger, ReactorSettings settings, Instant now)
       rate_(now.monotonic_s),
       began_s_(now.monotonic_s),
       ticked_s_(now.monotonic_s) {
+  const double deadline_s = now.monotonic_s + settings_.lease_timeout_s;
   for (const Job& job : leased_jobs(ledger_.reading()))
-    held_[{job.lease.epoch, job.lease.counter}] = {job.id, now.monotonic_s + settings_.lease_timeout_s, now.monotonic_s, 0};
+    held_[{job.lease.epoch, job.lease.counter}] = {job.id, deadline_s, now.monotonic_s, 0, 0, job.worker};
+  for (const RecheckRow& it : open_rechecks(ledger_.reading(), "LEASED", most_rechecks))
+    held_[{it.lease.epoch, it.lease.counter}] = {it.job, deadline_s, now.monotonic_s, 0, it.id, it.worker};
   for (const Job& job : waiting_jobs(ledger_.reading())) due_.emplace(now.monotonic_s + job.wait_s, job.id);
+  learn_anew();
+}
+
+void Reactor::learn_anew() {
+  jobs_build_ = meta_value(ledger_.reading(), "build_id");
+  paused_ = paused_classes(ledger_.reading());
+  rechecks_waiting_ = true;
+  nodes_.clear();
+  for (NodeRow& row : node_rows(ledger_.reading())) nodes_[row.node] = std::move(row);
+  std::set<std::int64_t> draining;
+  for (const WorkerRow& row : open_workers(ledger_.reading()))
+    if (row.draining) draining.insert(row.id);
+  for (auto& [peer, session] : roster_) session.draining = draining.contains(session.worker);
 }
 
 wire::Reply Reactor::answer(const std::string& peer, const wire::RequestEnvelope& envelope, Instant now) {
-  if (const auto* ask = std::get_if<wire::Ask>(&envelope.request))
-    return answer_ask(Desk{ledger_, book_, settings_.build_id, now, [this, now] { return live(now); }}, *ask);
+  if (const auto* ask = std::get_if<wire::Ask>(&envelope.request)) {
+    wire::Answer answer = answer_ask(Desk{ledger_, book_, settings_.build_id, now, [this, now] { return live(now); }}, *ask);
+    if (writes(ask->verb)) learn_anew();
+    return answer;
+  }
   if (const auto* bye = std::get_if<wire::Bye>(&envelope.request)) return on_bye(peer, *bye, now);
   const auto* hello = std::get_if<wire::Hello>(&envelope.request);
   const auto known = roster_.find(peer);
@@ -51,11 +76,10 @@ wire::Reply Reactor::answer(const std::string& peer, const wire::RequestEnvelope
 }
 
 std::optional<wire::Reply> Reactor::wrong_build(const std::string& build_id) {
-  const std::string jobs_build = meta_value(ledger_.reading(), "build_id");
-  if (jobs_build.empty() || jobs_build == build_id) return std::nullopt;
+  if (jobs_build_.empty() || jobs_build_ == build_id) return std::nullopt;
   return refuse(
       fmt::format("this farm's jobs are for solver build {}; this worker's solver is build {}: install the same build on every node",
-                  jobs_build, build_id));
+                  jobs_build_, build_id));
 }
 
 // LEASED under this very lease, by this peer. An earlier epoch's lease is as good as any: a restart takes nothing away.
@@ -67,10 +91,18 @@ bool Reactor::holds(const std::string& peer, const wire::LeaseId& lease, const J
 
 wire::Ruling Reactor::rule_on(const std::string& peer, const wire::HeldLease& held, std::int64_t worker, Instant now) {
   const std::optional<Job> job = job_by_lease(ledger_.reading(), held.lease);
-  if (!job || job->key != held.key || !holds(peer, held.lease, *job)) return wire::Ruling::abandon;
-  if (job->worker != worker) ledger_.adopt(job->id, worker);
+  const std::optional<RecheckRow> recheck = job ? std::nullopt : recheck_of(held.lease);
+  if (recheck) {
+    const std::optional<Job> done = job_by_id(ledger_.reading(), recheck->job);
+    const std::optional<WorkerRow> holder = worker_row(ledger_.reading(), recheck->worker);
+    if (!done || done->key != held.key || !holder || holder->peer != peer) return wire::Ruling::abandon;
+  } else {
+    if (!job || job->key != held.key || !holds(peer, held.lease, *job)) return wire::Ruling::abandon;
+    if (job->worker != worker) ledger_.adopt(job->id, worker);
+  }
   Held& kept = held_[{held.lease.epoch, held.lease.counter}];
-  if (kept.job == 0) kept = {job->id, 0.0, now.monotonic_s, 0};
+  if (kept.job == 0) kept = {job ? job->id : recheck->job, 0.0, now.monotonic_s, 0, recheck ? recheck->id : 0, worker};
+  kept.worker = worker;
   kept.deadline_s = now.monotonic_s + settings_.lease_timeout_s;
   kept.step = held.step;
   return wire::Ruling::adopt;
@@ -92,6 +124,13 @@ void Reactor::take_back_unlisted(const std::string& peer, const wire::Hello& hel
       held_.erase({job.lease.epoch, job.lease.counter});
     }
   }
+  for (const RecheckRow& it : open_rechecks(ledger_.reading(), "LEASED", most_rechecks)) {
+    const std::optional<WorkerRow> holder = worker_row(ledger_.reading(), it.worker);
+    const bool has_it =
+        std::any_of(hello.held.begin(), hello.held.end(), [&](const wire::HeldLease& held) { return held.lease == it.lease; });
+    if (!holder || holder->peer != peer || has_it) continue;
+    fail_recheck(it, {Fault::planned_stop, "", "its worker came without it"}, now);
+  }
 }
 
 wire::Reply Reactor::on_hello(const std::string& peer, const wire::Hello& hello, Instant now) {
@@ -102,7 +141,17 @@ wire::Reply Reactor::on_hello(const std::string& peer, const wire::Hello& hello,
   wire::Welcome welcome{epoch_, settings_.beat_interval_s, settings_.lease_timeout_s, {}};
   for (const wire::HeldLease& held : hello.held) welcome.rulings.push_back(rule_on(peer, held, worker, now));
   take_back_unlisted(peer, hello, worker, now);
-  Session session{worker, hello.instance, hello.node, hello.build_id, hello.slots, hello.remaining_s, now.monotonic_s, 0, {}};
+  Session session{.worker = worker,
+                  .instance = hello.instance,
+                  .node = hello.node,
+                  .build_id = hello.build_id,
+                  .slots = hello.slots,
+                  .remaining_s = hello.remaining_s,
+                  .seen_s = now.monotonic_s,
+                  .memory_bytes = hello.memory_bytes,
+                  .replies = {}};
+  const std::optional<WorkerRow> row = worker_row(ledger_.reading(), worker);
+  session.draining = row && row->draining;
   const auto known = roster_.find(peer);
   if (known != roster_.end() && known->second.instance == hello.instance) session.fast_faults = known->second.fast_faults;
   roster_[peer] = std::move(session);
@@ -120,14 +169,15 @@ wire::Reply Reactor::on_next(const std::string& peer, Session& session, const wi
   for (const wire::Failed& failed : next.failed) reply.receipts.push_back(on_failed(peer, session, failed, now));
   for (const wire::LeaseId& lease : next.returned) on_returned(peer, lease, now);
   hand_out(session, next.free_slots, reply, now);
+  if (reply.assignments.empty() && reply.order != wire::Order::drain && give_up_allocation(peer, session, now))
+    reply.order = wire::Order::drain;
   return reply;
 }
 
 wire::Reply Reactor::on_beat(const std::string& peer, Session& session, const wire::Beat& beat, Instant now) {
   wire::BeatReply reply;
   for (const wire::HeldLease& held : beat.held) reply.rulings.push_back(rule_on(peer, held, session.worker, now));
-  const std::optional<WorkerRow> row = worker_row(ledger_.reading(), session.worker);
-  if (row && row->draining) reply.order = wire::Order::drain;
+  if (session.draining) reply.order = wire::Order::drain;
   return reply;
 }
 
@@ -149,16 +199,27 @@ bool Reactor::tick(Instant now) {
   if (away_s > settings_.lease_timeout_s / 3.0)
     for (auto& [lease, held] : held_) held.deadline_s = std::max(held.deadline_s, now.monotonic_s + settings_.lease_timeout_s);
   expire_leases(now);
-  while (!due_.empty() && due_.begin()->first <= now.monotonic_s) {
+  wake_waiting(now);
+  forget_silent(now);
+  if (const bool is = settled(); is != was_settled_) {
+    was_settled_ = is;
+    if (is) notice({"settled", "nothing is left to do"});
+  }
+  return !due_.empty() && due_.begin()->first <= now.monotonic_s;
+}
+
+void Reactor::wake_waiting(Instant now) {
+  for (std::uint64_t n = 0; n < settings_.wake_most && !due_.empty() && due_.begin()->first <= now.monotonic_s; ++n) {
     const std::int64_t id = due_.begin()->second;
     due_.erase(due_.begin());
     const std::optional<Job> job = job_by_id(ledger_.reading(), id);
     if (job && job->state == State::retry_wait) ledger_.make_ready(id);
   }
-  forget_silent(now);
-  const Result<bool> expanded = expand_campaigns(ledger_, book_, settings_.expand_most);
-  if (!expanded) note(expanded.error().message);
-  return expanded && *expanded;
+}
+
+void Reactor::notice(Notice notice) {
+  note(notice.text);
+  notices_.push_back(std::move(notice));
 }
 
 void Reactor::expire_leases(Instant now) {
@@ -168,9 +229,13 @@ void Reactor::expire_leases(Instant now) {
       continue;
     }
     const wire::LeaseId lease{at->first.first, at->first.second};
+    const Attempt lost{Fault::node_lost, "lease_timeout", fmt::format("no beat for {:.0f} s", settings_.lease_timeout_s)};
+    const std::optional<RecheckRow> recheck = at->second.recheck ? recheck_of(lease) : std::nullopt;
     at = held_.erase(at);
-    if (const std::optional<Job> job = job_by_lease(ledger_.reading(), lease))
-      end_try(*job, {Fault::node_lost, "lease_timeout", fmt::format("no beat for {:.0f} s", settings_.lease_timeout_s)}, now);
+    if (recheck)
+      fail_recheck(*recheck, lost, now);
+    else if (const std::optional<Job> job = job_by_lease(ledger_.reading(), lease))
+      end_try(*job, lost, now);
   }
 }
 
@@ -202,15 +267,16 @@ std::set<std::string> Reactor::live_nodes(Instant now) const {
 bool Reactor::settled() { return is_settled(ledger_.reading()); }
 
 std::vector<std::string> Reactor::take_events() { return std::exchange(events_, {}); }
+std::vector<Notice> Reactor::take_notices() { return std::exchange(notices_, {}); }
 
 Live Reactor::live(Instant now) {
   Live view;
   view.epoch = epoch_;
   view.rate_per_s = rate_.per_second(now.monotonic_s);
   std::map<std::int64_t, int> running;
-  for (const Job& job : leased_jobs(ledger_.reading())) {
-    ++running[job.worker];
-    if (const auto held = held_.find({job.lease.epoch, job.lease.counter}); held != held_.end()) view.steps[job.id] = held->second.step;
+  for (const auto& [lease, held] : held_) {
+    ++running[held.worker];
+    view.steps[held.job] = held.step;
   }
   for (const auto& [peer, session] : roster_) {
     const std::optional<WorkerRow> row = worker_row(ledger_.reading(), session.worker);
@@ -218,10 +284,11 @@ Live Reactor::live(Instant now) {
     const double silent_s = now.monotonic_s - session.seen_s;
     const std::string_view state = silent_s > settings_.lease_timeout_s ? "silent"
                                    : session.stopped()                  ? "stopped"
-                                   : row->draining                      ? "draining"
+                                   : must_prove_itself(session)         ? "suspect"
+                                   : session.draining                   ? "draining"
                                                                         : "working";
     view.workers.push_back({peer, session.node, std::string(state), session.slots, running[session.worker], session.remaining_s, silent_s,
-                            row->done, row->faults});
+                            row->done, row->faults, row->node_type});
   }
   return view;
 }

@@ -1,4 +1,4 @@
-// Results, faults and claims: what NEXT brings and what it gets.
+// Results and faults: what NEXT brings. What it gets is in reactor_claims.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +10,6 @@
 
 namespace fracfarm {
 namespace {
-
-constexpr int claim_page = 64;   // READY jobs looked at at once
-constexpr int claim_pages = 16;  // and how often, where they do not fit the claimant
-constexpr double relearn_s = 5.0;
 
 bool is_file_name(const std::string& name) {
   return !name.empty() && name.size() <= 200 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
@@ -74,24 +70,73 @@ wire::Receipt Reactor::on_duplicate(const Job& job, const wire::Completion& comp
 wire::Receipt Reactor::on_completion(const std::string& peer, Session& session, const wire::Completion& completion, Instant now) {
   const std::optional<Job> job = job_by_key(ledger_.reading(), completion.key);
   if (!job || completion.lease.epoch > epoch_ || completion.lease.epoch == 0) return wire::Receipt::refused;
+  const std::optional<RecheckRow> recheck = job->state == State::done ? recheck_of(completion.lease) : std::nullopt;
   const bool current = holds(peer, completion.lease, *job);
   if (const std::string wrong = wrong_with(completion); !wrong.empty()) {
     const Fault fault = completion.verdict == Verdict::diverged ? Fault::solver_numeric : Fault::output_bad;
     if (current) end_try(*job, {fault, "completion", fmt::format("the result was refused: {}", wrong)}, now);
+    if (recheck) fail_recheck(*recheck, {fault, "completion", fmt::format("the result was refused: {}", wrong)}, now);
     return wire::Receipt::refused;
   }
+  if (recheck) return end_recheck(*recheck, *job, completion, session, now);
   if (job->state == State::done) return on_duplicate(*job, completion, now);
   if (job->state == State::cancelled) return wire::Receipt::stale;
   ledger_.complete(*job, outcome_of(completion, now.wall_s), completion.lease, session.worker);
   held_.erase({job->lease.epoch, job->lease.counter});
   session.fast_faults = 0;
   rate_.count(now.monotonic_s);
+  settle_blame(*job, session.node);
+  count_attempt(job->job_class, false, now);
+  sample_for_audit(*job, session.node, now);
   return wire::Receipt::accepted;
+}
+
+// Nodes that failed what `node` did are blamed; what is held against `node` is forgotten after enough results.
+void Reactor::settle_blame(const Job& job, const std::string& node) {
+  if (const auto held = nodes_.find(node); held != nodes_.end() && held->second.suspect.empty()) {
+    ledger_.count_done(node);
+    if (++held->second.done_since >= results_to_forget) {
+      ledger_.trust(node);
+      nodes_.erase(held);
+    }
+  }
+  if (job.attempts < 2) return;
+  for (const std::string& blamed : blamed_nodes(attempts_of(ledger_.reading(), job.id), node)) {
+    ledger_.blame(blamed);
+    NodeRow& row = nodes_[blamed];
+    row.node = blamed;
+    row.done_since = 0;
+    if (++row.blamed >= blames_of_a_suspect && row.suspect.empty())
+      suspect(blamed, fmt::format("{} of its failures were of jobs that other nodes then did, the last job {}", row.blamed, job.id));
+  }
+}
+
+void Reactor::suspect(const std::string& node, const std::string& why) {
+  ledger_.suspect(node, why);
+  NodeRow& row = nodes_[node];
+  row.node = node;
+  row.suspect = why;
+  notice({"suspect", fmt::format("{} gets a canary before work: {}", node, why), 0, node});
+}
+
+void Reactor::count_attempt(const JobClass& job_class, bool job_reason, Instant now) {
+  Fuse& fuse = fuses_[job_class];
+  if (!fuse.blows(job_reason) || paused_.contains(job_class)) return;
+  const std::string why =
+      fmt::format("more than {} of its last {} attempts failed for reasons of the jobs", fuse_most_failed, fuse.last_seen());
+  ledger_.pause_class(job_class, why, now.wall_s);
+  ledger_.raise_alarm("FUSE", 0, fmt::format("{} is paused: {}", text_of(job_class), why), now.wall_s);
+  paused_[job_class] = why;
+  notice({"paused", fmt::format("{} is paused: {}; fracfarm failures --explain looks for the cause, fracfarm resume goes on",
+                                text_of(job_class), why)});
 }
 
 wire::Receipt Reactor::on_failed(const std::string& peer, Session& session, const wire::Failed& failed, Instant now) {
   const std::optional<Job> job = job_by_key(ledger_.reading(), failed.key);
   if (!job) return wire::Receipt::refused;
+  if (job->state == State::done)
+    if (const std::optional<RecheckRow> recheck = recheck_of(failed.lease); recheck && recheck->worker == session.worker)
+      return fail_recheck(*recheck, {failed.fault, failed.signature, failed.message}, now), wire::Receipt::accepted;
   if (!holds(peer, failed.lease, *job)) return wire::Receipt::stale;
   count_fast(session, failed.lease, failed.fault, now);
   end_try(*job, {failed.fault, failed.signature, failed.message}, now);
@@ -99,19 +144,24 @@ wire::Receipt Reactor::on_failed(const std::string& peer, Session& session, cons
 }
 
 void Reactor::count_fast(Session& session, const wire::LeaseId& lease, Fault fault, Instant now) {
-  const bool may_be_the_node =
-      fault == Fault::node_lost || fault == Fault::output_bad || fault == Fault::solver_crash || fault == Fault::out_of_memory;
   const auto held = held_.find({lease.epoch, lease.counter});
-  if (!may_be_the_node || held == held_.end()) return;
+  if (!fault_row(fault).node_suspected || held == held_.end()) return;
   const bool fast = now.monotonic_s - held->second.began_s < fast_fault_s;
   session.fast_faults = fast ? session.fast_faults + 1 : 0;
   if (session.fast_faults == most_fast_faults)
-    note(fmt::format("{}: {} fast faults in a row; it gets no more work until it is started again", session.node, most_fast_faults));
+    notice({"stopped",
+            fmt::format("{}: {} fast faults in a row; it gets no more work until it does a job whose result is known, or is started again",
+                        session.node, most_fast_faults),
+            0, session.node});
 }
 
 void Reactor::on_returned(const std::string& peer, const wire::LeaseId& lease, Instant now) {
   const std::optional<Job> job = job_by_lease(ledger_.reading(), lease);
-  if (job && holds(peer, lease, *job)) end_try(*job, {Fault::planned_stop, "", "given back"}, now);
+  if (job && holds(peer, lease, *job)) return end_try(*job, {Fault::planned_stop, "", "given back"}, now);
+  if (const std::optional<RecheckRow> recheck = recheck_of(lease)) {
+    const std::optional<WorkerRow> holder = worker_row(ledger_.reading(), recheck->worker);
+    if (holder && holder->peer == peer) fail_recheck(*recheck, {Fault::planned_stop, "", "given back"}, now);
+  }
 }
 
 // The current try of a LEASED job is over without a result: history, budgets, next state.
@@ -125,79 +175,21 @@ void Reactor::end_try(const Job& job, const Attempt& attempt, Instant now) {
   if (next.state == State::ready) ledger_.make_ready(job.id);
   if (next.state == State::quarantined) ledger_.quarantine(job.id);
   if (next.state == State::retry_wait) {
-    ledger_.make_wait(job.id, next.wait_s, next.step_scale);
+    std::uint64_t floor = job.memory_floor;
+    if (next.more_memory)
+      if (const std::optional<WorkerRow> worker = worker_row(ledger_.reading(), job.worker))
+        floor = std::max(floor, worker->memory_bytes / static_cast<std::uint64_t>(std::max(1, worker->slots)));
+    ledger_.make_wait(job.id, next.wait_s, next.step_scale, floor);
     due_.emplace(now.monotonic_s + next.wait_s, job.id);
   }
-  if (attempt.fault != Fault::planned_stop)
-    note(fmt::format("job {}: {} ({}); {}", job.id, fault_row(attempt.fault).name, attempt.message.substr(0, 200), next.why));
-}
-
-// Work for free slots; where there is none, what to do instead.
-void Reactor::hand_out(Session& session, int free_slots, wire::Jobs& reply, Instant now) {
-  const std::optional<WorkerRow> row = worker_row(ledger_.reading(), session.worker);
-  if (row && row->draining) {
-    reply.order = wire::Order::drain;
-    return;
-  }
-  const bool may_work = !session.stopped() && !wrong_build(session.build_id) && !wrong_build(settings_.build_id);
-  if (may_work)
-    for (const Job& job : choose(session, std::min(free_slots, most_jobs_a_slot * std::min(session.slots, most_jobs_a_claim)), now))
-      reply.assignments.push_back(assign(job, session, now));
-  if (!reply.assignments.empty()) return;
-  reply.order = settled() ? wire::Order::stop : wire::Order::wait;
-  reply.wait_s = std::clamp(static_cast<double>(roster_.size()) / 200.0, 0.5, 10.0);
-}
-
-// Nothing where this program cannot read the job's campaign.
-std::optional<Candidate> Reactor::candidate_of(const Job& job) {
-  const auto campaign = book_.open(ledger_.reading(), job.campaign);
-  if (!campaign) return std::nullopt;
-  Candidate candidate{job.id, job.job_class, (*campaign)->wall_budget_s, {}};
-  if (job.attempts == 0) return candidate;
-  for (const AttemptRow& row : attempts_of(ledger_.reading(), job.id))
-    if (row.id > job.forgiven && row.fault != fault_row(Fault::planned_stop).name) candidate.failed_on.insert(row.node);
-  return candidate;
-}
-
-// Looks at READY jobs a page at a time, so that jobs which do not fit this claimant hide none that do; the number of pages is bounded.
-std::vector<Job> Reactor::choose(const Session& session, int most, Instant now) {
-  if (now.monotonic_s - learned_at_s_ > relearn_s) {
-    learned_ = learned_times(ledger_.reading());
-    learned_at_s_ = now.monotonic_s;
-  }
-  const std::set<std::string> nodes = live_nodes(now);
-  std::vector<Job> chosen;
-  ClaimCursor cursor;
-  for (int page = 0; page < claim_pages && static_cast<int>(chosen.size()) < most; ++page) {
-    const int left = most - static_cast<int>(chosen.size());
-    std::vector<Job> jobs = ready_jobs(ledger_.reading(), cursor, page == 0 ? std::min(left, most_jobs_a_claim) : claim_page);
-    if (jobs.empty()) break;
-    cursor = {jobs.back().priority, jobs.back().id};
-    std::vector<Candidate> candidates;
-    std::erase_if(jobs, [&](const Job& job) {
-      const std::optional<Candidate> candidate = candidate_of(job);
-      if (candidate) candidates.push_back(*candidate);
-      return !candidate;
-    });
-    for (const std::size_t at : claim(candidates, {session.node, left, session.remaining_s}, learned_, nodes))
-      chosen.push_back(std::move(jobs[at]));
-  }
-  return chosen;
-}
-
-wire::Assignment Reactor::assign(const Job& job, const Session& session, Instant now) {
-  const wire::LeaseId lease{epoch_, ++counter_};
-  ledger_.lease(job.id, lease, session.worker, now.wall_s);
-  held_[{lease.epoch, lease.counter}] = {job.id, now.monotonic_s + settings_.lease_timeout_s, now.monotonic_s, 0};
-  const std::shared_ptr<const Campaign> campaign = book_.open(ledger_.reading(), job.campaign).value();  // candidate_of opened it
-  return {lease,
-          job.key,
-          static_cast<std::uint64_t>(job.id),
-          job.attempts + 1,
-          scene_text(*campaign, job.position),
-          campaign->wall_budget_s,
-          job.step_scale,
-          campaign->store};
+  if (attempt.fault == Fault::planned_stop) return;
+  const std::string said =
+      fmt::format("job {}: {} ({}); {}", job.id, fault_row(attempt.fault).name, attempt.message.substr(0, 200), next.why);
+  if (next.state == State::quarantined)
+    notice({"quarantined", said, job.id});
+  else
+    note(said);
+  count_attempt(job.job_class, is_job_reason(attempt.fault), now);
 }
 
 }  // namespace fracfarm

@@ -19,23 +19,37 @@ namespace {
 using Names = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 7> jobs_arguments{"state", "material", "load", "class", "campaign", "after", "limit"};
 constexpr std::array<std::string_view, 2> explain_arguments{"job", "scene"};
+constexpr std::array<std::string_view, 1> worker_arguments{"worker"};
 constexpr std::array<std::string_view, 2> page_arguments{"after", "limit"};
-constexpr std::array<std::string_view, 1> known_arguments{"keys"};
-constexpr std::array<std::string_view, 1> submit_arguments{"campaign"};
-constexpr std::array<std::string_view, 5> mend_arguments{"jobs", "class", "state", "campaign", "dry_run"};
+constexpr std::array<std::string_view, 1> campaign_arguments{"campaign"};
+constexpr std::array<std::string_view, 9> mend_arguments{"jobs", "class",  "state", "campaign", "material",
+                                                         "load", "method", "count", "dry_run"};
+constexpr std::array<std::string_view, 10> priority_arguments{"jobs", "class",  "state", "campaign", "material",
+                                                              "load", "method", "count", "dry_run",  "priority"};
+constexpr std::array<std::string_view, 5> pause_arguments{"method", "material", "load", "reason", "dry_run"};
+constexpr std::array<std::string_view, 3> recheck_arguments{"jobs", "repair", "dry_run"};
 constexpr std::array<std::string_view, 2> drain_arguments{"workers", "dry_run"};
 
-constexpr std::array<RequestRow, 10> table{{
+constexpr std::array<RequestRow, 19> table{{
     {"status", false, Names{}, desk::status, "counts, verdicts, rate, time left, faults, workers"},
     {"jobs", false, Names(jobs_arguments), desk::jobs, "jobs as rows"},
     {"explain", false, Names(explain_arguments), desk::explain, "everything that happened to one job, and what to do"},
+    {"worker", false, Names(worker_arguments), desk::worker, "everything that is known of one worker, and what to do"},
+    {"failures", false, Names{}, desk::failures, "how tries ended badly, by class, fault and signature"},
+    {"cases", false, Names{}, desk::cases, "jobs that failed and a sample of those that did not"},
     {"records", false, Names(page_arguments), desk::records, "where the records of DONE jobs lie"},
     {"learned", false, Names{}, desk::learned, "times and sizes of results by class"},
-    {"known", false, Names(known_arguments), desk::known, "how many of these keys are here, and how many are DONE"},
-    {"submit", true, Names(submit_arguments), desk::submit, "take a campaign; the jobs are made in stretches"},
+    {"known", false, Names(campaign_arguments), desk::known, "how many jobs of this campaign are here, and how many are DONE"},
+    {"submit", true, Names(campaign_arguments), desk::submit, "take a campaign"},
     {"retry", true, Names(mend_arguments), desk::retry, "READY again, with every budget anew"},
+    {"release", true, Names(mend_arguments), desk::release, "READY, of those that are held"},
+    {"hold", true, Names(mend_arguments), desk::hold, "not handed out until released"},
+    {"priority", true, Names(priority_arguments), desk::priority, "which jobs come first"},
     {"cancel", true, Names(mend_arguments), desk::cancel, "never to be done"},
     {"drain", true, Names(drain_arguments), desk::drain, "workers finish what they hold and end"},
+    {"pause", true, Names(pause_arguments), desk::pause, "nothing more of a class is handed out"},
+    {"resume", true, Names(pause_arguments), desk::resume, "paused classes go on"},
+    {"recheck", true, Names(recheck_arguments), desk::recheck, "compute DONE jobs again: to compare, or to have their bytes again"},
 }};
 
 Problems unknown_arguments(const RequestRow& row, const nlohmann::json& arguments) {
@@ -64,8 +78,9 @@ wire::Answer answer_ask(const Desk& desk, const wire::Ask& ask) {
 }
 
 bool is_settled(Database& ledger) {
-  if (next_unexpanded(ledger)) return false;
-  Rows rows = ledger.query("SELECT EXISTS(SELECT 1 FROM counts WHERE n > 0 AND state IN ('READY', 'LEASED', 'RETRY_WAIT'))");
+  Rows rows = ledger.query(
+      "SELECT EXISTS(SELECT 1 FROM counts WHERE n > 0 AND state IN ('READY', 'LEASED', 'RETRY_WAIT')) OR EXISTS(SELECT 1 FROM campaigns"
+      " WHERE expanded < total) OR EXISTS(SELECT 1 FROM rechecks WHERE state IN ('READY', 'LEASED') AND kind <> 'CANARY')");
   return rows.next() && rows.integer(0) == 0;
 }
 
@@ -145,18 +160,20 @@ nlohmann::json job_json(const Job& job) {
   return it;
 }
 
-Result<Job> find_job(Database& ledger, const std::string& word) {
+Result<Job> find_job(const Desk& desk, const std::string& word) {
+  Database& ledger = desk.ledger.reading();
   const bool number =
       !word.empty() && word.size() <= 12 && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (number) {
-    if (std::optional<Job> job = job_by_id(ledger, std::stoll(word))) return *job;
+    if (std::optional<Job> job = look_up(ledger, desk.book, std::stoll(word))) return *job;
     if (word.size() < 4) return fail(Fault::bad_request, fmt::format("there is no job {}", word));
   }
   const bool hex = std::all_of(word.begin(), word.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
   if (!hex || word.size() < 4 || word.size() > 64)
     return fail(Fault::bad_request, fmt::format("'{:.70}' is neither a job's id nor 4 to 64 characters of its key", word));
   std::vector<Job> found = jobs_by_key_prefix(ledger, word, 2);
-  if (found.empty()) return fail(Fault::bad_request, fmt::format("no job's key begins with {}", word));
+  if (found.empty())
+    return fail(Fault::bad_request, fmt::format("no job's key begins with {}; one that nobody has tried yet is found by its id", word));
   if (found.size() > 1)
     return fail(Fault::bad_request,
                 fmt::format("more than one job's key begins with {}: {:.16} and {:.16}", word, found[0].key, found[1].key));

@@ -20,13 +20,14 @@ namespace fracfarm {
 struct LiveWorker {
   std::string name;  // of its key
   std::string node;
-  std::string state;  // working, draining, silent, or stopped (too many fast faults in a row)
+  std::string state;  // working, draining, silent, suspect, or stopped (too many fast faults in a row)
   int slots = 0;
   int running = 0;
   double remaining_s = -1.0;  // < 0: unlimited
   double silent_s = 0.0;
   std::uint64_t done = 0;
   std::uint64_t faults = 0;
+  std::string node_type;
 };
 
 // What only a running coordinator knows.

@@ -8,6 +8,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
 #include "common/base/text.hpp"
+#include "coordinator/claim.hpp"
 #include "coordinator/queries.hpp"
 #include "coordinator/requests_parts.hpp"
 #include "coordinator/retry_policy.hpp"
@@ -104,6 +105,20 @@ nlohmann::json alarms_json(Database& ledger) {
   return list;
 }
 
+nlohmann::json paused_json(Database& ledger) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [it, why] : paused_classes(ledger))
+    list.push_back({{"method", it.method}, {"material", it.material}, {"load", it.load}, {"why", why}});
+  return list;
+}
+
+nlohmann::json suspects_json(Database& ledger) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const NodeRow& row : node_rows(ledger))
+    if (!row.suspect.empty()) list.push_back({{"node", row.node}, {"why", row.suspect}});
+  return list;
+}
+
 nlohmann::json history_json(const std::vector<AttemptRow>& history) {
   nlohmann::json list = nlohmann::json::array();
   for (const AttemptRow& row : history)
@@ -141,15 +156,46 @@ std::string done_text(const Job& job, const std::string& node) {
   return text;
 }
 
+// Why a READY job is not handed out: its class is paused, or no worker has the time that it may take.
+Explanation explain_waiting(const Desk& desk, const Job& job) {
+  Database& ledger = desk.ledger.reading();
+  const std::map<JobClass, std::string> paused = paused_classes(ledger);
+  if (const auto found = paused.find(job.job_class); found != paused.end())
+    return {fmt::format("{} is paused: {}", text_of(job.job_class), found->second),
+            "fracfarm failures --explain looks for the cause; fracfarm resume goes on"};
+  const std::string why = job.attempts ? "waits for a free slot, to be tried again" : "waits for a free slot";
+  if (!desk.live) return {why, "no coordinator runs: fracfarm run goes on"};
+  const Live live = desk.live();
+  if (live.workers.empty()) return {"no worker is here", "start one: fracfarm worker"};
+  const auto campaign = desk.book.open(ledger, job.campaign);
+  const LearnedTimes learned{learned_times(ledger), learned_times_by_node(ledger)};
+  double most_left_s = 0.0, needs_s = 1e300;
+  bool known = false;
+  for (const LiveWorker& it : live.workers) {
+    const LongestTry longest = longest_try(job.job_class, campaign ? (*campaign)->wall_budget_s : 0.0, learned, it.node_type);
+    if (it.remaining_s < 0.0 || longest.seconds <= it.remaining_s) return {why, "nothing"};
+    most_left_s = std::max(most_left_s, it.remaining_s);
+    needs_s = std::min(needs_s, longest.seconds);
+    known = known || longest.learned;
+  }
+  if (known)
+    return {fmt::format("no worker has the {} left that it may take, by results of its class; the most is {}", duration_text(needs_s),
+                        duration_text(most_left_s)),
+            "start workers in a longer allocation"};
+  return {fmt::format(
+              "no worker has its whole wall-clock budget of {} left, which counts until {} results of its class are known; the most is {}",
+              duration_text(needs_s), enough_history, duration_text(most_left_s)),
+          "start workers in a longer allocation, or submit the campaign with a smaller wall_clock budget"};
+}
+
 Explanation explain_job(const Desk& desk, const Job& job, const std::vector<AttemptRow>& history) {
   const std::optional<WorkerRow> worker = worker_row(desk.ledger.reading(), job.worker);
   const std::string node = worker ? worker->node : "a node";
   switch (job.state) {
     case State::held:
-      return {"held back", fmt::format("fracfarm retry {} makes it ready", job.id)};
+      return {"a person held it back", fmt::format("fracfarm release {} makes it ready", job.id)};
     case State::ready:
-      return {job.attempts ? "waits for a free slot, to be tried again" : "waits for a free slot",
-              desk.live ? "nothing" : "no coordinator runs: fracfarm run goes on"};
+      return explain_waiting(desk, job);
     case State::leased: {
       const std::string where = fmt::format("attempt {} is with {} on {} since {}", job.attempts, worker ? worker->peer : "a worker", node,
                                             utc_text(job.leased_at));
@@ -202,6 +248,9 @@ wire::Answer status(const Desk& desk, const nlohmann::json&) {
                       {"finish_time", left ? nlohmann::json(utc_text(desk.now.wall_s + *left)) : nlohmann::json()},
                       {"faults", fault_counts(ledger)},
                       {"workers", workers_json(live)},
+                      {"paused", paused_json(ledger)},
+                      {"suspects", suspects_json(ledger)},
+                      {"rechecks", recheck_counts(ledger)},
                       {"alarms", alarms_json(ledger)}});
 }
 
@@ -216,13 +265,13 @@ wire::Answer jobs(const Desk& desk, const nlohmann::json& arguments) {
   filter.after = integer_of(arguments, "after").value_or(0);
   filter.limit = static_cast<int>(std::clamp<std::int64_t>(integer_of(arguments, "limit").value_or(50), 1, most_rows));
   nlohmann::json list = nlohmann::json::array();
-  for (const Job& job : jobs_where(desk.ledger.reading(), filter)) list.push_back(job_json(job));
+  for (const Job& job : list_jobs(desk.ledger.reading(), desk.book, filter)) list.push_back(job_json(job));
   const bool more = list.size() == static_cast<std::size_t>(filter.limit);
   return answer_json({{"schema", "fracfarm.jobs/1"}, {"more", more}, {"jobs", std::move(list)}});
 }
 
 wire::Answer explain(const Desk& desk, const nlohmann::json& arguments) {
-  const Result<Job> job = find_job(desk.ledger.reading(), text_of(arguments, "job"));
+  const Result<Job> job = find_job(desk, text_of(arguments, "job"));
   if (!job) return answer_error(exit_bad_input, job.error().message);
   const std::vector<AttemptRow> history = attempts_of(desk.ledger.reading(), job->id);
   const Explanation said = explain_job(desk, *job, history);
@@ -267,16 +316,6 @@ wire::Answer learned(const Desk& desk, const nlohmann::json&) {
                     {"p99_s", it.p99_s},
                     {"mean_bytes", it.mean_bytes}});
   return answer_json({{"schema", "fracfarm.learned/1"}, {"classes", std::move(list)}});
-}
-
-wire::Answer known(const Desk& desk, const nlohmann::json& arguments) {
-  std::uint64_t present = 0, done = 0;
-  for (const std::string& key : list_of(arguments, "keys")) {
-    const std::optional<Job> job = job_by_key(desk.ledger.reading(), key);
-    present += job.has_value();
-    done += job && job->state == State::done;
-  }
-  return answer_json({{"schema", "fracfarm.known/1"}, {"present", present}, {"done", done}});
 }
 
 }  // namespace fracfarm::desk

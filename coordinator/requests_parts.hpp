@@ -22,7 +22,7 @@ std::vector<std::string> list_of(const nlohmann::json& arguments, const char* na
 
 nlohmann::json job_json(const Job& job);
 // By id, or by the first 4 or more characters of its key. Errors: BAD_REQUEST where there is none or more than one.
-Result<Job> find_job(Database& ledger, const std::string& word);
+Result<Job> find_job(const Desk& desk, const std::string& word);
 
 wire::Answer status(const Desk& desk, const nlohmann::json& arguments);
 wire::Answer jobs(const Desk& desk, const nlohmann::json& arguments);
@@ -33,6 +33,15 @@ wire::Answer known(const Desk& desk, const nlohmann::json& arguments);
 wire::Answer submit(const Desk& desk, const nlohmann::json& arguments);
 wire::Answer retry(const Desk& desk, const nlohmann::json& arguments);
 wire::Answer cancel(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer release(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer hold(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer priority(const Desk& desk, const nlohmann::json& arguments);
 wire::Answer drain(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer pause(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer resume(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer worker(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer failures(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer cases(const Desk& desk, const nlohmann::json& arguments);
+wire::Answer recheck(const Desk& desk, const nlohmann::json& arguments);
 
 }  // namespace fracfarm::desk

@@ -32,6 +32,8 @@ RetryDecision quarantined(std::string why) { return {State::quarantined, 0.0, 1.
 
 bool counts_against_job(Fault fault) { return fault_row(fault).job_budget > 0 && fault != Fault::node_lost; }
 
+bool is_job_reason(Fault fault) { return counts_against_job(fault) || fault == Fault::bad_request; }
+
 double backoff_s(int faults, std::int64_t job) {
   const double spread =
       0.75 + 0.5 * static_cast<double>((static_cast<std::uint64_t>(job) * 0x9E3779B97F4A7C15ull) >> 40) / static_cast<double>(1 << 24);
@@ -48,14 +50,16 @@ RetryDecision decide_retry(const Job& job, std::span<const AttemptRow> history, 
   if (faults > row.job_budget) return quarantined(fmt::format("{} {} times; a job may end so {} times", row.name, faults, row.job_budget));
   if (counts_against_job(fault) && counted(history) >= attempts)
     return quarantined(fmt::format("{} attempts failed; the campaign allows {}", counted(history), attempts));
-  if (fault != Fault::node_lost)
-    if (const AttemptRow* other = same_elsewhere(history); other && row.action != FaultAction::half_step)
+  const bool halve = row.action == FaultAction::half_step, enlarge = row.action == FaultAction::more_memory;
+  if (fault != Fault::node_lost && !halve && !enlarge)
+    if (const AttemptRow* other = same_elsewhere(history))
       return quarantined(fmt::format("{} with the same signature '{}' on {} and {}: the job is to blame, not a node", row.name,
                                      other->signature, other->node, history.back().node));
-  const bool halve = row.action == FaultAction::half_step;
+  const std::string_view how = halve     ? "again with half the time step"
+                               : enlarge ? "again, where a slot has more memory if there is such a node"
+                                         : "again, on another node where there is one";
   return {State::retry_wait, backoff_s(faults, job.id), halve ? 0.5 * job.step_scale : job.step_scale,
-          fmt::format("{} {} of {}: {}", row.name, faults, row.job_budget,
-                      halve ? "again with half the time step" : "again, on another node where there is one")};
+          fmt::format("{} {} of {}: {}", row.name, faults, row.job_budget, how), enlarge};
 }
 
 }  // namespace fracfarm

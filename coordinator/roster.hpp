@@ -34,8 +34,12 @@ struct Session {
   double remaining_s = -1.0;  // as it last said
   double seen_s = 0.0;        // monotonic
   int fast_faults = 0;
+  std::uint64_t memory_bytes = 0;
+  bool draining = false;
+  double idle_since_s = -1.0;  // asked and got nothing since then; < 0: it has work
   std::deque<std::pair<std::uint64_t, wire::Reply>> replies;
 
+  std::uint64_t slot_memory() const { return memory_bytes / static_cast<std::uint64_t>(std::max(1, slots)); }
   bool stopped() const { return fast_faults >= most_fast_faults; }
   const wire::Reply* replied(std::uint64_t request_id) const {
     for (const auto& [id, reply] : replies)

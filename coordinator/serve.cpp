@@ -11,6 +11,8 @@
 #include "common/wire/codec.hpp"
 #include "common/wire/endpoint.hpp"
 #include "common/wire/socket.hpp"
+#include "coordinator/backup_timer.hpp"
+#include "coordinator/notifier.hpp"
 #include "coordinator/reactor.hpp"
 
 namespace fracfarm {
@@ -67,9 +69,18 @@ class Switchboard {
   bool more_ = false;
 };
 
-void tell_events(Reactor& reactor, CoordinatorLog& log) {
-  for (const std::string& event : reactor.take_events()) log.say(Level::info, event);
-}
+// What goes on beside the serving.
+struct Aside {
+  Notifier notifier;
+  BackupTimer backup;
+
+  void tell(Reactor& reactor, CoordinatorLog& log, double wall_s) {
+    for (const std::string& event : reactor.take_events()) log.say(Level::info, event);
+    notifier.tell(reactor.take_notices(), wall_s);
+    for (const std::string& complaint : notifier.take_complaints()) log.say(Level::warning, complaint);
+    for (const std::string& words : backup.take_words()) log.say(Level::info, words);
+  }
+};
 
 // Scenes are made by this program: it must be of the build that the unfinished jobs are for.
 Result<void> demand_build(Ledger& ledger) {
@@ -86,10 +97,11 @@ ExitCode complain(CoordinatorLog& log, const Error& error, ExitCode otherwise) {
 }
 
 ExitCode loop(Switchboard& desk, Reactor& reactor, const ServeOptions& options, const std::atomic<bool>& stop, CoordinatorLog& log) {
+  Aside aside{Notifier(options.notify), BackupTimer({options.farm}, options.backup_every_s)};
   double settled_at_s = -1.0;
   while (!stop) {
     desk.turn();
-    tell_events(reactor, log);
+    aside.tell(reactor, log, desk.now().wall_s);
     if (!desk.healthy()) {
       log.say(Level::error, "the thread that checks keys has ended: nobody could connect any more");
       return exit_failed;
@@ -117,7 +129,7 @@ ExitCode serve(const ServeOptions& options, const std::atomic<bool>& stop, Coord
   if (const Result<void> fits = demand_build(*ledger); !fits) return complain(log, fits.error(), exit_failed);
   Result<wire::Server> server = wire::Server::bind(options.bind, options.farm);
   if (!server) return complain(log, server.error(), exit_failed);
-  Reactor reactor(*ledger, {build_info().build_id, options.lease_timeout_s / 6.0, options.lease_timeout_s, 512},
+  Reactor reactor(*ledger, {build_info().build_id, options.lease_timeout_s / 6.0, options.lease_timeout_s, 512, options.audit_fraction},
                   {clock.monotonic_s(), clock.wall_s()});
   Switchboard desk(std::move(*server), *ledger, reactor, clock);
   const std::string endpoint = wire::reachable(desk.endpoint(), options.advertise.empty() ? host_name() : options.advertise);

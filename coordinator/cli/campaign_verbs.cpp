@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "common/base/build_info.hpp"
-#include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
@@ -14,6 +12,7 @@
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
 #include "coordinator/cli/submission.hpp"
+#include "coordinator/enrolment.hpp"
 #include "coordinator/job.hpp"
 
 namespace fracfarm::cli {
@@ -24,47 +23,28 @@ using nlohmann::json;
 // Where nothing of a class has been measured in the farm: an orthogonal sample on the default grid, rounded up.
 constexpr double default_job_s = 1.0;
 constexpr double default_record_bytes = 0.75e6;
-constexpr std::uint64_t keys_asked_at_once = 1000;
 
 struct PlanRow {
   std::string material, load, set, method;
   auto operator<=>(const PlanRow&) const = default;
 };
 
+// Jobs by class and crack set: counted by series and ranges of patterns, not one by one.
 std::map<PlanRow, std::uint64_t> count_jobs(const Campaign& campaign) {
   std::map<PlanRow, std::uint64_t> counts;
-  for (std::uint64_t at = 0, total = job_count(campaign); at < total; ++at) {
-    const JobSpec spec = job_at(campaign, at);
-    ++counts[{spec.material, spec.load, std::string(name_of(spec.set)), std::string(name_of(spec.method))}];
-  }
+  for (const Series& series : series_of(campaign))
+    for (const IdRange& range : campaign.blocks[series.block].patterns)
+      counts[{series.first.material, series.first.load, std::string(name_of(range.set)), std::string(name_of(series.first.method))}] +=
+          range.last - range.first + 1;
   return counts;
 }
 
-struct Known {
-  std::uint64_t present = 0, done = 0;
-};
-
-// How much of the campaign the farm has already: by the keys of all its jobs, so that overlapping campaigns count too.
+// How much of the campaign the farm has already, overlapping campaigns included.
 Result<Known> ask_known(FarmLink& link, const Campaign& campaign) {
-  Known known;
-  ProgressLine line;
-  SystemClock clock;
-  const double began_s = clock.monotonic_s();
-  for (std::uint64_t at = 0, total = job_count(campaign); at < total;) {
-    json keys = json::array();
-    for (; at < total && keys.size() < keys_asked_at_once; ++at)
-      keys.push_back(job_key(canonical_text(scene_of(campaign, job_at(campaign, at))), build_info().build_id));
-    const Result<wire::Answer> answer = link.ask("known", {{"keys", keys}});
-    if (!answer) return tl::unexpected(answer.error());
-    const json body = json::parse(answer->body);
-    known.present += body.value("present", std::uint64_t{0});
-    known.done += body.value("done", std::uint64_t{0});
-    const double elapsed_s = clock.monotonic_s() - began_s;
-    if (elapsed_s > 2.0)
-      line.show(fmt::format("looking for jobs that are here already: {} of {} · {} left", at, total,
-                            duration_text(elapsed_s * static_cast<double>(total - at) / static_cast<double>(at))));
-  }
-  return known;
+  const Result<wire::Answer> answer = link.ask("known", {{"campaign", canonical_text(campaign)}});
+  if (!answer) return tl::unexpected(answer.error());
+  const json body = json::parse(answer->body);
+  return Known{body.value("present", std::uint64_t{0}), body.value("done", std::uint64_t{0})};
 }
 
 struct Estimates {
@@ -177,7 +157,7 @@ int run_submit(int argc, char** argv) {
     if (!campaign) return report_problems(campaign.error(), file.string(), options.json);
     Result<FarmLink> link = FarmLink::open(options.farm, true);
     if (!link) return report_unreachable(link.error(), options.json);
-    const Answered answer = submit_and_wait(*link, *campaign, options.json);
+    const Answered answer = submit(*link, *campaign, options.json);
     if (answer.usable) fmt::print("{}", options.json ? json::parse(answer.body).dump(2) + "\n" : submitted_text(json::parse(answer.body)));
     return answer.exit_code;
   });

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double answer_timeout_s = 30.0;
 constexpr double holder_patience_s = 30.0;  // for another command to let go of the ledger
-constexpr std::uint64_t stretch = 2048;     // jobs made in one transaction
 
 Result<wire::Client> connect(const std::filesystem::path& farm) {
   const Result<wire::Endpoint> endpoint = wire::read_endpoint(farm);
@@ -70,18 +69,6 @@ Result<wire::Answer> FarmLink::ask(const std::string& verb, const nlohmann::json
       answer_ask(Desk{own_->ledger, own_->book, build_info().build_id, {clock.monotonic_s(), clock.wall_s()}, {}}, request);
   own_->ledger.commit();
   return answer;
-}
-
-Result<void> FarmLink::help_expanding() {
-  if (client_) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return {};
-  }
-  own_->ledger.begin();
-  const Result<bool> done = expand_campaigns(own_->ledger, own_->book, stretch);
-  own_->ledger.commit();
-  if (!done) return tl::unexpected(done.error());
-  return {};
 }
 
 }  // namespace fracfarm::cli

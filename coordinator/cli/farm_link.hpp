@@ -21,9 +21,6 @@ class FarmLink {
   // The answer's body; its exit code beside it. Errors: NODE_LOST where nobody answers.
   Result<wire::Answer> ask(const std::string& verb, const nlohmann::json& arguments);
 
-  // Where this process holds the ledger, makes the next jobs of a submitted campaign; else waits a moment while the coordinator does.
-  Result<void> help_expanding();
-
   bool served() const { return client_.has_value(); }  // a coordinator runs
 
  private:

@@ -99,13 +99,18 @@ int run_jobs(int argc, char** argv) {
 
 int run_explain(int argc, char** argv) {
   FarmOptions options;
-  std::string job;
+  std::string job, worker;
   bool scene = false;
-  CLI::App app{"Everything that happened to one job, why it is where it is, and what to do.", "fracfarm explain"};
+  CLI::App app{"Everything that happened to one job (or: worker NAME), why it is where it is, and what to do.", "fracfarm explain"};
   add_farm_options(app, options);
-  app.add_option("JOB", job, "id, or the first characters of its key")->required();
+  app.add_option("JOB", job, "id, or the first characters of its key; or the word worker")->required();
+  app.add_option("NAME", worker, "after the word worker: its name or its node's, as fracfarm status prints them");
   app.add_flag("--scene", scene, "print its scene instead, to solve it by hand: fracfarm solve");
   if (const auto status = parse(app, argc, argv)) return *status;
+  if (job == "worker" && !worker.empty())
+    return guarded(options, [&] {
+      return look(options, "worker", {{"worker", worker}}, [](const json& answer) { return worker_text(answer, stdout); });
+    });
   return guarded(options, [&] {
     return look(options, "explain", {{"job", job}, {"scene", scene}},
                 [&](const json& answer) { return scene ? answer.value("scene", "") + "\n" : explain_text(answer, stdout); });

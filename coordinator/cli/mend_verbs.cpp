@@ -1,9 +1,10 @@
-// Verbs that change what a farm will do: retry, cancel, drain. Each says what it did, or with --dry-run what it would do.
+// Verbs that move jobs and workers: retry, hold, release, cancel, priority, drain. Each says what it did, or with --dry-run what it would
+// do.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "coordinator/cli/farm_verbs.hpp"
+#include "coordinator/cli/change.hpp"
 #include "coordinator/cli/options.hpp"
 
 namespace fracfarm::cli {
@@ -11,27 +12,10 @@ namespace {
 
 using nlohmann::json;
 
-std::string change_text(const json& answer, std::string_view did, std::string_view what) {
-  const bool dry = answer.value("dry_run", false);
-  const std::uint64_t n = answer.value("changed", std::uint64_t{0});
-  std::string text = fmt::format("{}{} {}{}{}\n", dry ? "would be " : "", did, n, what, n == 1 ? "" : "s");
-  for (const json& it : answer["refused"]) text += fmt::format("job {}: {}\n", it.value("job", 0), it.value("why", ""));
-  return text;
-}
-
-int change(const FarmOptions& options, const std::string& verb, const json& arguments, std::string_view did, std::string_view what) {
-  return guarded(options, [&] {
-    Result<FarmLink> link = FarmLink::open(options.farm);
-    if (!link) return report_unreachable(link.error(), options.json);
-    const Answered answer = ask_and_report(*link, verb, arguments, options.json);
-    if (answer.usable) fmt::print("{}", change_text(json::parse(answer.body), did, what));
-    return answer.exit_code;
-  });
-}
-
 struct Selection {
   std::vector<std::string> jobs;
-  std::string fault, state, campaign;
+  std::string fault, state, campaign, material, load, method;
+  std::int64_t count = 0;
   bool dry_run = false;
 
   void add_to(CLI::App& app) {
@@ -39,13 +23,22 @@ struct Selection {
     app.add_option("--class", fault, "those whose last try ended in this fault, as SOLVER_CRASH");
     app.add_option("--state", state, "those in this state");
     app.add_option("--campaign", campaign, "those of the campaign of this name");
+    app.add_option("--material", material, "those of this material");
+    app.add_option("--load", load, "those of this load");
+    app.add_option("--method", method, "those of this method");
+    app.add_option("--count", count, "at most so many")->check(CLI::PositiveNumber);
     app.add_flag("--dry-run", dry_run, "say what would change, change nothing");
   }
   json arguments() const {
     json it{{"jobs", jobs}, {"dry_run", dry_run}};
-    if (!fault.empty()) it["class"] = fault;
-    if (!state.empty()) it["state"] = state;
-    if (!campaign.empty()) it["campaign"] = campaign;
+    for (const auto& [name, value] : {std::pair{"class", &fault},
+                                      {"state", &state},
+                                      {"campaign", &campaign},
+                                      {"material", &material},
+                                      {"load", &load},
+                                      {"method", &method}})
+      if (!value->empty()) it[name] = *value;
+    if (count > 0) it["count"] = count;
     return it;
   }
 };
@@ -60,7 +53,7 @@ int run_retry(int argc, char** argv) {
   add_farm_options(app, options);
   selection.add_to(app);
   if (const auto status = parse(app, argc, argv)) return *status;
-  return change(options, "retry", selection.arguments(), "made ready:", " job");
+  return change(options, "retry", selection.arguments(), {"made ready:", " job", "s"});
 }
 
 int run_cancel(int argc, char** argv) {
@@ -70,7 +63,41 @@ int run_cancel(int argc, char** argv) {
   add_farm_options(app, options);
   selection.add_to(app);
   if (const auto status = parse(app, argc, argv)) return *status;
-  return change(options, "cancel", selection.arguments(), "cancelled:", " job");
+  return change(options, "cancel", selection.arguments(), {"cancelled:", " job", "s"});
+}
+
+int run_hold(int argc, char** argv) {
+  FarmOptions options;
+  Selection selection;
+  CLI::App app{"Keeps jobs that wait from being handed out; fracfarm release lets them go.", "fracfarm hold"};
+  add_farm_options(app, options);
+  selection.add_to(app);
+  if (const auto status = parse(app, argc, argv)) return *status;
+  return change(options, "hold", selection.arguments(), {"held:", " job", "s"});
+}
+
+int run_release(int argc, char** argv) {
+  FarmOptions options;
+  Selection selection;
+  CLI::App app{"Makes held jobs ready again.", "fracfarm release"};
+  add_farm_options(app, options);
+  selection.add_to(app);
+  if (const auto status = parse(app, argc, argv)) return *status;
+  return change(options, "release", selection.arguments(), {"released:", " job", "s"});
+}
+
+int run_priority(int argc, char** argv) {
+  FarmOptions options;
+  Selection selection;
+  int value = 0;
+  CLI::App app{"Which jobs come first: those of higher priority; 0 is usual.", "fracfarm priority"};
+  add_farm_options(app, options);
+  app.add_option("--to", value, "from -1000 to 1000")->required()->check(CLI::Range(-1000, 1000));
+  selection.add_to(app);
+  if (const auto status = parse(app, argc, argv)) return *status;
+  json arguments = selection.arguments();
+  arguments["priority"] = value;
+  return change(options, "priority", arguments, {"changed:", " job", "s"});
 }
 
 int run_drain(int argc, char** argv) {
@@ -83,7 +110,7 @@ int run_drain(int argc, char** argv) {
   app.add_option("WORKER", workers, "names of workers or nodes, as fracfarm status prints them");
   app.add_flag("--dry-run", dry_run, "say who would be drained, change nothing");
   if (const auto status = parse(app, argc, argv)) return *status;
-  return change(options, "drain", {{"workers", workers}, {"dry_run", dry_run}}, "drained:", " worker");
+  return change(options, "drain", {{"workers", workers}, {"dry_run", dry_run}}, {"drained:", " worker", "s"});
 }
 
 }  // namespace fracfarm::cli

@@ -95,8 +95,21 @@ Result<void> restart_dead(const json& status, Daemons& daemons) {
   return {};
 }
 
+// Whatever is ready is of a paused class.
+bool all_paused(const json& status) {
+  std::uint64_t ready = 0, of_paused = 0;
+  for (const json& it : status["classes"]) {
+    const std::uint64_t n = it["counts"].value("ready", std::uint64_t{0});
+    ready += n;
+    for (const json& paused : status["paused"])
+      if (paused["method"] == it["method"] && paused["material"] == it["material"] && paused["load"] == it["load"]) of_paused += n;
+  }
+  return ready > 0 && ready == of_paused;
+}
+
 // Every worker stopped by too many fast faults and nothing running: nothing will ever happen.
 bool stuck(const json& status) {
+  if (status["counts"].value("leased", 0) == 0 && status["counts"].value("retry_wait", 0) == 0 && all_paused(status)) return true;
   if (status["workers"].empty() || status["counts"].value("leased", 0) > 0) return false;
   for (const json& worker : status["workers"])
     if (worker.value("state", "") != "stopped") return false;
@@ -119,9 +132,10 @@ Result<json> wait_until_done(FarmLink& link, Daemons& daemons) {
     line.show(progress_text(status));
     if (status.value("settled", false)) break;
     if (stuck(status))
-      return fail(Fault::node_lost,
-                  "every worker has had too many fast faults in a row and gets no more work: see fracfarm status and fracfarm jobs --class "
-                  "SOLVER_CRASH");
+      return fail(Fault::node_lost, all_paused(status)
+                                        ? "what is left is paused: fracfarm status says why, fracfarm resume goes on"
+                                        : "every worker has had too many fast faults in a row and gets no more work: see fracfarm "
+                                          "status and fracfarm failures");
     if (const Result<void> alive = restart_dead(status, daemons); !alive) return tl::unexpected(alive.error());
     std::this_thread::sleep_for(std::chrono::duration<double>(poll_s));
   }
@@ -151,7 +165,7 @@ int run_campaign(const RunOptions& options) {
   {
     Result<FarmLink> link = FarmLink::open(options.farm.farm, true);
     if (!link) return report_unreachable(link.error(), options.farm.json);
-    const Answered answer = submit_and_wait(*link, *campaign, options.farm.json);
+    const Answered answer = submit(*link, *campaign, options.farm.json);
     if (!answer.usable) return answer.exit_code;
     if (!options.farm.json) fmt::print(stderr, "{}", submitted_text(json::parse(answer.body)));
   }

@@ -100,6 +100,14 @@ std::string status_text(const json& status, std::FILE* to) {
   if (const auto n = n_of(counts, "quarantined"))
     text += fmt::format(
         "{}\n", ink(fmt::format("{} quarantined: fracfarm jobs --state quarantined, then fracfarm explain JOB", n), Ink::yellow, to));
+  for (const json& it : status.value("paused", json::array()))
+    text += fmt::format("{}\n", ink(fmt::format("paused: {} {} {}: {}; fracfarm resume goes on", it.value("method", ""),
+                                                it.value("material", ""), it.value("load", ""), it.value("why", "")),
+                                    Ink::yellow, to));
+  for (const json& it : status.value("suspects", json::array()))
+    text += fmt::format("{}\n", ink(fmt::format("suspect: {}: {}; it gets a canary before work", it.value("node", ""), it.value("why", "")),
+                                    Ink::yellow, to));
+  if (const auto n = n_of(counts, "held")) text += fmt::format("{} held: fracfarm release lets them go\n", n);
   for (const json& it : status["alarms"])
     text += fmt::format("{} job {}: {}\n", ink(it.value("kind", ""), Ink::red, to), n_of(it, "job"), it.value("message", ""));
   if (!status["workers"].empty()) text += "\n" + worker_table(status["workers"]);
@@ -130,6 +138,25 @@ std::string explain_text(const json& it, std::FILE* to) {
   for (const json& row : it["history"])
     rows.push_back({std::to_string(row.value("attempt", 0)), row.value("fault", ""), row.value("node", ""), row.value("signature", ""),
                     row.value("ended_at", ""), row.value("message", "")});
+  return text + "\n" + table_text(rows);
+}
+
+std::string worker_text(const json& it, std::FILE* to) {
+  const std::string state = it["now"].is_null() ? "not connected" : it["now"].value("state", "");
+  std::string text = fmt::format("{} on {} ({})\nstate   {}\nwhy     {}\nto do   {}\n", ink(it.value("worker", ""), Ink::bold, to),
+                                 it.value("node", ""), it.value("node_type", ""), state, it.value("why", ""), it.value("todo", ""));
+  if (const auto n = n_of(it, "blamed")) text += fmt::format("blamed  {} failures of jobs that others then did\n", n);
+  for (const json& row : it["canaries"])
+    text += fmt::format("canary  job {}: {} {}\n", n_of(row, "job"), row.value("state", ""), row.value("message", ""));
+  Table starts{{"started", "done", "faults"}};
+  for (const json& row : it["starts"])
+    starts.push_back({row.value("began_at", ""), std::to_string(n_of(row, "done")), std::to_string(n_of(row, "faults"))});
+  text += "\n" + table_text(starts);
+  if (it["history"].empty()) return text + "no try of its node has failed\n";
+  Table rows{{"job", "fault", "signature", "ended", "message"}};
+  for (const json& row : it["history"])
+    rows.push_back({std::to_string(n_of(row, "job")), row.value("fault", ""), row.value("signature", ""), row.value("ended_at", ""),
+                    row.value("message", "")});
   return text + "\n" + table_text(rows);
 }
 

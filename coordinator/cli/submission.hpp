@@ -1,4 +1,4 @@
-// Submitting a campaign and waiting until it has been made jobs; shared by submit and run.
+// Submitting a campaign; shared by submit and run.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,8 +9,8 @@
 
 namespace fracfarm::cli {
 
-// The last answer of the farm (schema fracfarm.submit/1) where it went well; otherwise printed, with the exit status.
-Answered submit_and_wait(FarmLink& link, const Campaign& campaign, bool json);
+// The answer of the farm (schema fracfarm.submit/1) where it went well; otherwise printed, with the exit status.
+Answered submit(FarmLink& link, const Campaign& campaign, bool json);
 
 std::string submitted_text(const nlohmann::json& answer);
 

@@ -15,8 +15,26 @@ int run_jobs(int argc, char** argv);
 int run_explain(int argc, char** argv);
 int run_verify(int argc, char** argv);
 
+// failures_verb.cpp, metrics_verb.cpp, doctor_verb.cpp
+int run_failures(int argc, char** argv);
+int run_metrics(int argc, char** argv);
+int run_doctor(int argc, char** argv);
+
+// class_verbs.cpp
+int run_pause(int argc, char** argv);
+int run_resume(int argc, char** argv);
+int run_recheck(int argc, char** argv);
+
+// keep_verbs.cpp
+int run_backup(int argc, char** argv);
+int run_restore(int argc, char** argv);
+int run_rebuild(int argc, char** argv);
+
 // mend_verbs.cpp
 int run_retry(int argc, char** argv);
+int run_hold(int argc, char** argv);
+int run_release(int argc, char** argv);
+int run_priority(int argc, char** argv);
 int run_cancel(int argc, char** argv);
 int run_drain(int argc, char** argv);
 
@@ -40,13 +58,25 @@ constexpr auto table = std::to_array<Verb>({
     {"submit", "Run a campaign", "put the jobs of a campaign into the ledger", run_submit},
     {"status", "Look", "counts, rate, time left, faults, workers", run_status},
     {"jobs", "Look", "a table of jobs", run_jobs},
-    {"explain", "Look", "what happened to one job, and what to do", run_explain},
+    {"explain", "Look", "what happened to one job or worker, and what to do", run_explain},
+    {"failures", "Look", "how tries ended badly, and what stands out among them", run_failures},
     {"verify", "Look", "read every record again: do ledger and shards agree", run_verify},
+    {"doctor", "Look", "is this machine fit to serve or work: disks, clock, keys, limits", run_doctor},
+    {"metrics", "Look", "the status as Prometheus text", run_metrics},
     {"extract", "Look", "copy records out of the store", run_extract},
     {"report", "Look", "the campaign as one HTML page in pictures", run_report},
     {"retry", "Mend", "make jobs ready again", run_retry},
+    {"hold", "Mend", "keep jobs from being handed out", run_hold},
+    {"release", "Mend", "make held jobs ready", run_release},
+    {"priority", "Mend", "which jobs come first", run_priority},
     {"cancel", "Mend", "take jobs out that are not done", run_cancel},
+    {"pause", "Mend", "hand out nothing more of a class", run_pause},
+    {"resume", "Mend", "paused classes go on", run_resume},
+    {"recheck", "Mend", "compute jobs that are done again: to compare, or to repair", run_recheck},
     {"drain", "Mend", "let workers finish and end", run_drain},
+    {"backup", "Keep", "copy the ledger while it is in use", run_backup},
+    {"restore", "Keep", "put a copy back, and adopt what the shards have since", run_restore},
+    {"rebuild", "Keep", "make a ledger from the shards alone", run_rebuild},
     {"solve", "One simulation", "solve one scene and write its record", nullptr},
     {"mesh", "One simulation", "make, measure and draw the FDEM mesh of a scene", nullptr},
     {"check", "One simulation", "is this record sound: name every broken rule", run_check},

@@ -12,6 +12,7 @@
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
 #include "common/record/check.hpp"
+#include "coordinator/cli/change.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
 #include "coordinator/cli/record_places.hpp"
@@ -20,6 +21,12 @@ namespace fracfarm::cli {
 namespace {
 
 using nlohmann::json;
+
+// Spreads ids evenly over [0, 1), another way every day, so that a daily sample reads everything in time.
+double hash_share(std::uint64_t job) {
+  const auto day = static_cast<std::uint64_t>(SystemClock{}.wall_s() / 86400.0);
+  return static_cast<double>(((job ^ (day * 0xD1B54A32D192ED03ull)) * 0x9E3779B97F4A7C15ull) >> 11) / static_cast<double>(1ull << 53);
+}
 
 struct Damage {
   RecordPlace place;
@@ -91,19 +98,27 @@ json report_json(std::size_t records, const std::vector<Damage>& damages, const 
           {"orphans", left_over}};
 }
 
-int verify(const FarmOptions& options, bool digests_only) {
+// DONE stays DONE; their bytes are computed again.
+void ask_repair(const FarmOptions& options, const std::vector<Damage>& damages) {
+  json jobs = json::array();
+  for (const Damage& it : damages) jobs.push_back(it.place.job);
+  (void)change(options, "recheck", {{"jobs", jobs}, {"repair", true}}, {"to be computed again:", " job", "s"});
+}
+
+int verify(const FarmOptions& options, bool digests_only, double sample, bool repair) {
   std::vector<RecordPlace> places;
   {
     Result<FarmLink> link = FarmLink::open(options.farm);
     if (!link) return report_unreachable(link.error(), options.json);
-    Result<std::vector<RecordPlace>> found = record_places(*link, options.farm, [](std::uint64_t) { return true; });
+    Result<std::vector<RecordPlace>> found =
+        record_places(*link, options.farm, [&](std::uint64_t job) { return sample >= 1.0 || hash_share(job) < sample; });
     if (!found) return report_unreachable(found.error(), options.json);
     places = std::move(*found);
   }  // lets go of the ledger: reading the records takes its time
   sort_by_place(places);
   std::set<std::filesystem::path> stores;
   for (const RecordPlace& place : places) stores.insert(place.shard.parent_path());
-  const std::vector<Orphan> orphans = find_orphans(places, stores);
+  const std::vector<Orphan> orphans = sample < 1.0 ? std::vector<Orphan>{} : find_orphans(places, stores);
   const std::vector<Damage> damages = audit_all(places, digests_only);
   const int exit_code = damages.empty() ? exit_ok : exit_failed;
   if (options.json) return fmt::print("{}\n", report_json(places.size(), damages, orphans).dump(2)), exit_code;
@@ -112,8 +127,8 @@ int verify(const FarmOptions& options, bool digests_only) {
   if (!orphans.empty())
     fmt::print("{} entries of shards belong to no job: second results, or cut off before they were acknowledged; harmless\n",
                orphans.size());
-  if (!damages.empty())
-    fmt::print("to compute a damaged one again, begin another farm with its campaign, or restore the shard from a copy\n");
+  if (!damages.empty() && repair) ask_repair(options, damages);
+  if (!damages.empty() && !repair) fmt::print("fracfarm verify --repair, or fracfarm recheck --repair JOB, computes them again\n");
   return exit_code;
 }
 
@@ -121,15 +136,18 @@ int verify(const FarmOptions& options, bool digests_only) {
 
 int run_verify(int argc, char** argv) {
   FarmOptions options;
-  bool digests_only = false;
+  bool digests_only = false, repair = false;
+  double sample = 1.0;
   CLI::App app{
       "Reads every record of the ledger again: are its bytes there, have they the digest, do they keep every rule? Exit status 1 where one "
       "does not.",
       "fracfarm verify"};
   add_farm_options(app, options);
   app.add_flag("--digests-only", digests_only, "compare digests, do not check the records' content");
+  app.add_option("--sample", sample, "read this share of the records, others every day")->check(CLI::Range(0.0, 1.0));
+  app.add_flag("--repair", repair, "have damaged records computed again");
   if (const auto status = parse(app, argc, argv)) return *status;
-  return guarded(options, [&] { return verify(options, digests_only); });
+  return guarded(options, [&] { return verify(options, digests_only, sample, repair); });
 }
 
 }  // namespace fracfarm::cli

@@ -43,6 +43,17 @@ int main(int argc, char** argv) {
   app.add_option("--lease-timeout", options.lease_timeout_s, "seconds without a beat after which a job goes to another worker")
       ->check(CLI::Range(0.5, 86400.0))
       ->capture_default_str();
+  app.add_option("--audit", options.audit_fraction, "share of the results that another node computes again, to compare")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  double backup_minutes = options.backup_every_s / 60.0;
+  app.add_option("--backup-every", backup_minutes, "minutes between copies of the ledger in FARM/backups; 0: none")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option(
+      "--notify", options.notify,
+      "command that is run, with JSON on its standard input, when a job is quarantined, a class is paused, an alarm is raised, a node "
+      "is suspect, or nothing is left");
   app.add_flag("--until-done", options.until_done, "end when nothing is left to do");
   app.add_flag("--quiet", quiet, "only warnings and errors on stderr");
   app.add_flag("--version", version, "print the version and end");
@@ -53,6 +64,7 @@ int main(int argc, char** argv) {
   }
   if (version) return fmt::print("fracfarm-coordinator {}\n", build_info().build_id), exit_ok;
   catch_signals();
+  options.backup_every_s = 60.0 * backup_minutes;
   options.farm = std::filesystem::absolute(options.farm).lexically_normal();
   std::error_code error;
   std::filesystem::create_directories(options.farm / "log", error);
