@@ -76,9 +76,13 @@ std::vector<std::vector<float>> frames_of(const Array& array) {
   return frames;
 }
 
-std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, bool by_column) {
-  constexpr std::size_t budget = 65536;
-  if (by_column) return {std::min(dims[0], budget), 1};
+std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, Chunking chunking) {
+  constexpr std::size_t budget = 65536, frames_together = 64;
+  if (chunking == Chunking::columns) return {std::min(dims[0], budget), 1};
+  if (chunking == Chunking::blocks && dims[0] > 0) {
+    const std::size_t parts = (dims[0] - 1) / frames_together + 1, frames = (dims[0] - 1) / parts + 1;
+    return {frames, std::min(dims[1], budget / frames)};
+  }
   std::vector<std::size_t> chunk(dims.size());
   std::size_t product = 1;
   for (std::size_t d = dims.size(); d-- > 0;) {

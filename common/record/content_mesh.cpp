@@ -34,19 +34,21 @@ bool on_boundary(const Point& a, const Point& b, const Scene& scene) {
   return both(0, 0.0) || both(0, scene.width) || both(1, 0.0) || both(1, scene.height);
 }
 
-double distance(const Point& p, const Point& a, const Point& b) {
+// Squares: only the largest of many distances needs its root.
+double distance_squared(const Point& p, const Point& a, const Point& b) {
   const double dx = b[0] - a[0], dz = b[1] - a[1], square = dx * dx + dz * dz;
   const double along = square > 0.0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dz) / square, 0.0, 1.0) : 0.0;
-  return std::hypot(p[0] - a[0] - along * dx, p[1] - a[1] - along * dz);
+  const double away_x = p[0] - a[0] - along * dx, away_z = p[1] - a[1] - along * dz;
+  return away_x * away_x + away_z * away_z;
 }
 
 struct Line {
   Point a, b;
 };
 
-double distance(const Point& p, const std::vector<Line>& lines) {
+double distance_squared(const Point& p, const std::vector<Line>& lines) {
   double least = infinity;
-  for (const Line& line : lines) least = std::min(least, distance(p, line.a, line.b));
+  for (const Line& line : lines) least = std::min(least, distance_squared(p, line.a, line.b));
   return least;
 }
 
@@ -139,9 +141,9 @@ double crack_distance(const Context& c) {
   double worst = 0.0;
   for (const Line& edge : edges)
     for (const Point& p : {edge.a, Point{0.5 * (edge.a[0] + edge.b[0]), 0.5 * (edge.a[1] + edge.b[1])}, edge.b})
-      worst = std::max(worst, distance(p, drawn));
-  for (const Point& p : points) worst = std::max(worst, distance(p, edges));
-  return worst / h;
+      worst = std::max(worst, distance_squared(p, drawn));
+  for (const Point& p : points) worst = std::max(worst, distance_squared(p, edges));
+  return std::sqrt(worst) / h;
 }
 
 }  // namespace fracfarm::content

@@ -41,6 +41,11 @@ struct Array {
   friend bool operator==(const Array&, const Array&) = default;
 };
 
+// How a dataset is cut into chunks of at most 64 Ki elements, which are what is compressed.
+// rows: as many trailing indices as fit. columns: each column of a table by itself, by which coordinates shrink by a fifth. blocks: frames
+// of as few values as fit with many frames, by which what stays as it is from frame to frame shrinks by a fifth.
+enum class Chunking { rows, columns, blocks };
+
 struct DatasetSpec {
   std::string path;
   Type type = Type::f8;
@@ -50,7 +55,7 @@ struct DatasetSpec {
   std::string axis{};     // T, Z, Y, X of a coordinate, or empty
   int fraction_bits = 0;  // 0: all
   std::string rounding_note{};
-  bool by_column = false;  // each column of a table is chunks of its own: of coordinates they compress by a fifth better
+  Chunking chunking = Chunking::rows;
 
   bool is_scale() const { return dims.size() == 1 && dims.front() == path; }
   // Name and text, beside those of dimension scales, in a file of that schema.
@@ -91,8 +96,8 @@ std::span<const AttributeRow> attributes(std::string_view method);  // `take` mu
 
 std::span<const std::string_view> groups();  // beside the root; /provenance has any text attributes
 
-// As many trailing indices as fit 64 Ki elements make a chunk, or as many rows of one column.
-std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, bool by_column);
+// columns and blocks: of two dimensions.
+std::vector<std::size_t> chunk_dims(std::span<const std::size_t> dims, Chunking chunking);
 
 bool is_name(std::string_view name);  // letters, digits and _ . + -, at most name_limit
 

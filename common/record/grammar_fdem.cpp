@@ -18,9 +18,10 @@ Array table_of(Type type, const std::vector<Row>& rows) {
   return {type, {rows.size(), std::tuple_size_v<Row>}, bytes_of(rows)};
 }
 
+// None where they are not as long as they should be.
 template <class Row>
 std::vector<Row> rows_of(const Array& array) {
-  return values_of<Row>(array);
+  return array.dims[1] == std::tuple_size_v<Row> ? values_of<Row>(array) : std::vector<Row>{};
 }
 
 Array take_nodes(const View& view) {
@@ -34,11 +35,15 @@ void give_nodes(Record& r, const Array& array) {
   for (const auto& [x, y, z] : rows_of<std::array<double, 3>>(array)) r.fdem.mesh.nodes.push_back({x, y == 0.0 ? z : nan});
 }
 
-// The scale along which edges are counted.
-Array take_edges(const View& view) {
-  std::vector<std::int32_t> numbers(view.record.fdem.mesh.edge_nodes.size());
-  std::iota(numbers.begin(), numbers.end(), 0);
-  return {Type::i4, {numbers.size()}, bytes_of(numbers)};
+// 0, 1, …: a scale along which something is counted. Every dimension has one: ParaView's NetCDF reader crashes on those that have none.
+Array numbers(std::size_t count) {
+  std::vector<std::int32_t> values(count);
+  std::iota(values.begin(), values.end(), 0);
+  return {Type::i4, {count}, bytes_of(values)};
+}
+
+DatasetRow scale(const std::string& path, std::string meaning, Array (*take)(const View&)) {
+  return {{path, Type::i4, {path}, "1", std::move(meaning)}, take, nullptr};
 }
 
 Array by_edge(const std::vector<float>& values) { return {Type::f4, {values.size()}, bytes_of(values)}; }
@@ -57,7 +62,8 @@ Value take_settled(const Record& r) {
   return pick.settled_at().value_or(nan);
 }
 
-const std::string t_dim = "/time", e_dim = "/edge";
+const std::string t_dim = "/time", e_dim = "/edge", n_dim = "/node", m_dim = "/triangle", xyz_dim = "/component", corner_dim = "/corner",
+                  end_dim = "/end";
 const std::string damage_range = "0 intact, 1 broken, 2 initial crack";
 const std::string never_up = "; below 1 stays below 1";
 
@@ -68,17 +74,22 @@ std::vector<DatasetRow> fdem_frames() {
       {{"/time", Type::f8, {t_dim}, "s", "time of the frame since the start", "T"},
        [](const View& v) { return array_of(v.record.fdem.time, {v.record.fdem.time.size()}); },
        [](Record& r, const Array& a) { r.fdem.time = doubles_of(a); }},
-      {{"/edge", Type::i4, {e_dim}, "1", "number of the edge between two triangles, from 0"}, take_edges, nullptr},
-      {{"/node_xyz", Type::f8, {"node", "3"}, "m", "undeformed nodes: x to the right, y = 0, z up", "", 0, "", true},
+      scale(n_dim, "number of the node", [](const View& v) { return numbers(v.record.fdem.mesh.nodes.size()); }),
+      scale(m_dim, "number of the triangle", [](const View& v) { return numbers(v.record.fdem.mesh.triangles.size()); }),
+      scale(e_dim, "number of the edge between two triangles", [](const View& v) { return numbers(v.record.fdem.mesh.edge_nodes.size()); }),
+      scale(xyz_dim, "x, y, z", [](const View&) { return numbers(3); }),
+      scale(corner_dim, "corner of a triangle", [](const View&) { return numbers(3); }),
+      scale(end_dim, "end of an edge, or side of it", [](const View&) { return numbers(2); }),
+      {{"/node_xyz", Type::f8, {n_dim, xyz_dim}, "m", "undeformed nodes: x to the right, y = 0, z up", "", 0, "", Chunking::columns},
        take_nodes,
        give_nodes},
-      {{"/tri_nodes", Type::i4, {"triangle", "3"}, "", "nodes of each triangle, counter-clockwise seen with z up"},
+      {{"/tri_nodes", Type::i4, {m_dim, corner_dim}, "", "nodes of each triangle, counter-clockwise seen with z up"},
        [](const View& v) { return table_of(Type::i4, v.record.fdem.mesh.triangles); },
        [](Record& r, const Array& a) { r.fdem.mesh.triangles = rows_of<std::array<int, 3>>(a); }},
-      {{"/edge_nodes", Type::i4, {"edges", "2"}, "", "nodes at the ends of each edge"},
+      {{"/edge_nodes", Type::i4, {e_dim, end_dim}, "", "nodes at the ends of each edge"},
        [](const View& v) { return table_of(Type::i4, v.record.fdem.mesh.edge_nodes); },
        [](Record& r, const Array& a) { r.fdem.mesh.edge_nodes = rows_of<std::array<int, 2>>(a); }},
-      {{"/edge_tris", Type::i4, {"edges", "2"}, "", "triangles left and right of the way from the edge's first node to its second"},
+      {{"/edge_tris", Type::i4, {e_dim, end_dim}, "", "triangles left and right of the way from the edge's first node to its second"},
        [](const View& v) { return table_of(Type::i4, v.record.fdem.mesh.edge_triangles); },
        [](Record& r, const Array& a) { r.fdem.mesh.edge_triangles = rows_of<std::array<int, 2>>(a); }},
       {{"/edge_kind", Type::i1, {e_dim}, "1", "1 on the edges of the initial cracks, 0 on joints"},
@@ -86,7 +97,7 @@ std::vector<DatasetRow> fdem_frames() {
          return Array{Type::i1, {v.record.fdem.mesh.edge_kind.size()}, bytes_of(v.record.fdem.mesh.edge_kind)};
        },
        [](Record& r, const Array& a) { r.fdem.mesh.edge_kind = values_of<EdgeKind>(a); }},
-      {{"/damage", Type::f4, {t_dim, e_dim}, "1", "damage of the edge: " + damage_range, "", psi_fraction_bits, never_up},
+      {{"/damage", Type::f4, {t_dim, e_dim}, "1", "damage of the edge: " + damage_range, "", psi_fraction_bits, never_up, Chunking::blocks},
        [](const View& v) { return array_of_frames(v.record.fdem.damage, {v.record.fdem.mesh.edge_nodes.size()}); },
        [](Record& r, const Array& a) { r.fdem.damage = frames_of(a); }},
       {{"/damage_initial", Type::f4, {e_dim}, "1", "damage at the start: " + damage_range, "", psi_fraction_bits, never_up},

@@ -176,7 +176,7 @@ std::string OpenDataset::wrong_layout() const {
   std::vector<hsize_t> chunk(dims_.size());
   if (H5Pget_chunk(layout, static_cast<int>(chunk.size()), chunk.data()) != static_cast<int>(chunk.size()))
     return "its chunks cannot be read";
-  const std::vector<std::size_t> found(chunk.begin(), chunk.end()), expected = grammar::chunk_dims(dims_, spec_.by_column);
+  const std::vector<std::size_t> found(chunk.begin(), chunk.end()), expected = grammar::chunk_dims(dims_, spec_.chunking);
   if (found != expected) return fmt::format("chunks are {}, they should be {}", in_words(found), in_words(expected));
   if (filters_of(layout) != expected_filters(spec_)) return "filters are not shuffle, deflate and fletcher32 in this order";
   return {};
@@ -197,7 +197,7 @@ std::optional<Array> OpenDataset::read(std::size_t& budget, std::size_t file_byt
   budget -= bytes;
   array.bytes.assign(bytes, '\0');
   if (bytes == 0) return array;
-  ChunkWalk walk(dims_, grammar::chunk_dims(dims_, spec_.by_column), width);
+  ChunkWalk walk(dims_, grammar::chunk_dims(dims_, spec_.chunking), width);
   std::string spare, stored;
   std::size_t number = 0;
   for (bool more = true; more; more = walk.next(), ++number) {

@@ -117,7 +117,7 @@ h5::Handle Writer::layout(const DatasetSpec& spec, const Array& array) {
     H5Pset_layout(list, H5D_COMPACT);
     return list;
   }
-  const std::vector<std::size_t> chunk = grammar::chunk_dims(array.dims, spec.by_column);
+  const std::vector<std::size_t> chunk = grammar::chunk_dims(array.dims, spec.chunking);
   const std::vector<hsize_t> extents(chunk.begin(), chunk.end());
   must(H5Pset_chunk(list, static_cast<int>(extents.size()), extents.data()));
   if (h5::shuffled(array.type)) must(H5Pset_shuffle(list));
@@ -145,7 +145,7 @@ void Writer::dataset(const DatasetSpec& spec, const Array& array) {
 // Every chunk compressed here and handed over whole, past HDF5's own slower filters.
 void Writer::fill(hid_t dataset, const DatasetSpec& spec, const Array& array) {
   const std::size_t width = grammar::width_of(array.type);
-  h5::ChunkWalk walk(array.dims, grammar::chunk_dims(array.dims, spec.by_column), width);
+  h5::ChunkWalk walk(array.dims, grammar::chunk_dims(array.dims, spec.chunking), width);
   std::string spare;
   for (bool more = true; more; more = walk.next()) {
     const std::string_view stored = encode_chunk(walk.bytes_of(array.bytes, spare), width);

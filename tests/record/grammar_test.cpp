@@ -125,7 +125,7 @@ TEST_CASE("the method says which layout, and must have one") {
   CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "alchemy"); }), "'method' is missing or 'alchemy'"));
   CHECK(has(said_after([](hid_t f) { H5Adelete(f, "method"); }), "'method' is missing"));
   CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "fdem"); }), "/psi: not part of the grammar"));
-  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "phase_field"); }, sample::fdem_record()), "/node_xyz: not part"));
+  CHECK(has(said_after([](hid_t f) { add_text(f, "/", "method", "phase_field"); }, sample::fdem_record()), "/node: not part"));
 }
 
 TEST_CASE("a record of the first schema is read, and one that mixes the two is not") {
@@ -153,7 +153,9 @@ TEST_CASE("what follows from an FDEM record's content is compared with it") {
     return said_after(
         [&](hid_t f) {
           const double value = 1e-5;
-          const h5::Handle made = h5::attribute(H5Aopen_by_name(f, "/failure", name, H5P_DEFAULT, H5P_DEFAULT));
+          const h5::Handle group = h5::object(H5Oopen(f, "/failure", H5P_DEFAULT)), space = h5::space(H5Screate(H5S_SCALAR));
+          REQUIRE(H5Adelete(group, name) >= 0);
+          const h5::Handle made = h5::attribute(H5Acreate2(group, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT));
           REQUIRE(H5Awrite(made, H5T_NATIVE_DOUBLE, &value) >= 0);
         },
         sample::fdem_record());
@@ -168,7 +170,21 @@ TEST_CASE("extents of an FDEM record that differ from its number of edges are na
   };
   CHECK(has(said("/break_time", {{7}, {7}, true, H5T_IEEE_F64LE}), "it should be"));
   CHECK(has(said("/damage", {{9, 7}, {9, 7}}), "it should be"));
-  CHECK(has(said("/tri_nodes", {{7, 2}, {7, 2}, true, H5T_STD_I32LE}), "extent 1 is 2, it should be 3"));
-  CHECK(has(said("/node_xyz", {{7, 3}, {7, 3}, true, H5T_IEEE_F64LE}), "chunks are 7 x 3, they should be 7 x 1"));
+  CHECK(has(said("/tri_nodes", {{640, 2}, {640, 2}, true, H5T_STD_I32LE}), "extent 1 is 2, it should be 3"));
+  CHECK(has(said("/node_xyz", {{357, 3}, {357, 3}, true, H5T_IEEE_F64LE}), "chunks are 357 x 3, they should be 357 x 1"));
   CHECK(has(said("/edge", {{1u << 27}, {65536}, true, H5T_STD_I32LE}), "file of this size"));
+}
+
+TEST_CASE("chunks hold at most 64 Ki elements, and every element once") {
+  using grammar::chunk_dims, grammar::Chunking;
+  using Dims = std::vector<std::size_t>;
+  CHECK(chunk_dims(Dims{90, 128, 128}, Chunking::rows) == Dims{4, 128, 128});
+  CHECK(chunk_dims(Dims{70000, 3}, Chunking::columns) == Dims{65536, 1});
+  CHECK(chunk_dims(Dims{32, 24000}, Chunking::blocks) == Dims{32, 2048});
+  CHECK(chunk_dims(Dims{65, 24000}, Chunking::blocks) == Dims{33, 1985});
+  CHECK(chunk_dims(Dims{9, 100}, Chunking::blocks) == Dims{9, 100});
+  for (std::size_t frames = 1; frames < 700; ++frames) {
+    const Dims chunk = chunk_dims(Dims{frames, 24000}, Chunking::blocks);
+    CHECK((chunk[0] >= 1 && chunk[0] <= 64 && chunk[1] >= 1024 && chunk[0] * chunk[1] <= 65536));
+  }
 }
