@@ -60,6 +60,7 @@ struct State {
   std::vector<unsigned char> break_mode;
   Field<Real> extra;         // rows of tractions, weight and contact at u, N/m
   std::vector<int> exposed;  // sides that contact knows, in the order they came
+  unsigned char cracks_exposed = 0;
   Ledger ledger;
 };
 

@@ -140,8 +140,6 @@ std::vector<std::pair<Pair, int>> ordered_joints(const Body& body, const Plan& p
   return ordered;
 }
 
-constexpr int row_of_side(int side) { return (side / 3) * row_size + 2 * (side % 3); }
-
 void add_joint(const Body& body, Plan& plan, int edge) {
   const int joint = plan.joints++;
   if (joint % lanes == 0) plan.along.resize(plan.along.size() + 2 * lanes, 0.0);

@@ -48,6 +48,8 @@ inline std::size_t at_corner(int corner, int axis) {
   const int slot = corner / 3, k = corner % 3;
   return static_cast<std::size_t>(((slot / lanes) * corner_count + 2 * k + axis) * lanes + slot % lanes);
 }
+// Where the first of the four numbers of side 3 slot + k lies in rows of row_size.
+constexpr int row_of_side(int side) { return (side / 3) * row_size + 2 * (side % 3); }
 // And in rows of row_size.
 inline std::size_t in_row(int corner, int axis) { return static_cast<std::size_t>((corner / 3) * row_size + 2 * (corner % 3) + axis); }
 

@@ -107,7 +107,6 @@ void Fdem<Real>::note_breaks(double time) {
       double& broke = state_.break_time[static_cast<Index>(edge)];
       if (!std::isnan(broke)) continue;
       broke = time, state_.break_mode[static_cast<Index>(edge)] = static_cast<unsigned char>(mode_of(b, l));
-      if (state_.exposed.empty()) expose_cracks();
       expose(plan_.left_side[static_cast<Index>(b * lanes + l)]), expose(plan_.right_side[static_cast<Index>(b * lanes + l)]);
     }
   }
@@ -128,10 +127,25 @@ void Fdem<Real>::watch_side(int side) {
   scratch_.extra_slots.push_back(slot);
 }
 
-// The faces of initial cracks.
+// The faces of initial cracks, once two of them overlap: before, contact has nothing to do.
 template <class Real>
-void Fdem<Real>::expose_cracks() {
+void Fdem<Real>::expose_cracks_that_close() {
+  if (state_.cracks_exposed || (rules_.contact_after_break && !a_crack_closes())) return;
+  state_.cracks_exposed = 1;
   for (const int side : plan_.crack_sides) expose(side);
+}
+
+template <class Real>
+bool Fdem<Real>::a_crack_closes() const {
+  for (Index i = 0; i + 1 < plan_.crack_sides.size(); i += 2) {
+    const int row = row_of_side(plan_.crack_sides[i]);
+    const Real *left = &scratch_.rows[static_cast<Index>(row)],
+               *right = &scratch_.rows[static_cast<Index>(row_of_side(plan_.crack_sides[i + 1]))];
+    const double* corners = &plan_.corner_rows[static_cast<Index>(row)];
+    const Real x = static_cast<Real>(corners[2] - corners[0]), z = static_cast<Real>(corners[3] - corners[1]);
+    if ((right[2] - left[0]) * z < (right[3] - left[1]) * x || (right[0] - left[2]) * z < (right[1] - left[3]) * x) return true;
+  }
+  return false;
 }
 
 // By the shares of opening and sliding, each of what breaks the joint alone, in their squares: three quarters of one name it.
@@ -263,7 +277,7 @@ Result<void> Fdem<Real>::start(double dt) {
   join(0.0);
   pull(0.0);
   for (const Corner side : body_.exposed) expose(plan_.corner_of(side));
-  if (!rules_.contact_after_break) expose_cracks();
+  expose_cracks_that_close();
   contact_.add_forces(scratch_.rows.data(), state_.extra.data());
   double given = 0.0;  // J/m, by velocities that are told from the start
   remember_told();
@@ -303,6 +317,7 @@ Result<void> Fdem<Real>::step(long long n, double dt) {
   clock.end(Stage::boundary);
   join(next);
   clock.end(Stage::joints);
+  expose_cracks_that_close();
   contact_.add_forces(scratch_.rows.data(), state_.extra.data());
   clock.end(Stage::contact);
   return {};
@@ -354,7 +369,7 @@ void Fdem<Real>::save(ArchiveWriter& archive) const {
   const State<Real>& s = state_;
   for (const Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.put_array(*field);
   archive.put_array(s.joint_state), archive.put_array(s.break_time), archive.put_array(s.break_mode);
-  archive.put_array(s.exposed);
+  archive.put_array(s.exposed), archive.put(s.cracks_exposed);
   archive.put(s.ledger);
   contact_.save(archive);
 }
@@ -364,7 +379,7 @@ bool Fdem<Real>::load(ArchiveReader& archive, long long n, double dt) {
   State<Real>& s = state_;
   for (Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.get_array_like(*field);
   archive.get_array_like(s.joint_state), archive.get_array_like(s.break_time), archive.get_array_like(s.break_mode);
-  archive.get_array(s.exposed);
+  archive.get_array(s.exposed), s.cracks_exposed = archive.get<unsigned char>();
   s.ledger = archive.get<Ledger>();
   if (archive.failed() || !sides_exist(s.exposed, plan_)) return false;
   contact_.load(archive);

@@ -51,7 +51,8 @@ class Fdem final : public MeshSimulation {
   void move_as_one(double dt);
   void note_breaks(double time);
   void expose(int side);
-  void expose_cracks();
+  void expose_cracks_that_close();
+  bool a_crack_closes() const;
   void watch_side(int side);
   void step_back(double dt);
   void remember_told() const;
