@@ -63,7 +63,7 @@ MethodPage fdem_page() {
           draw_panels,
           body_of,
           field_of,
-          {{"external_work", "external work", black},
+          {{"external_work", "work", black},
            {"elastic_energy", "elastic", blue},
            {"kinetic_energy", "kinetic", orange},
            {"fracture_energy", "fracture", green},

@@ -14,7 +14,7 @@ namespace fracfarm::picture {
 namespace {
 
 constexpr int head_height = 92, plot_height = 330;
-constexpr double visible_share = 0.02;  // of the largest energy
+constexpr double visible_share = 0.05;  // of the largest energy
 
 const MethodPage* page_of(std::string_view method) {
   static const std::array<MethodPage, 2> pages{phase_field_page(), fdem_page()};
