@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "tests/verification/fdem/cases.hpp"
+#include "tests/verification/fdem/set_ups.hpp"
 #include "tests/verification/set_ups.hpp"
 
 namespace fracfarm::verification {
@@ -66,6 +68,7 @@ constexpr std::array table{
     Case{"PF-40", slow, "paper test 1: edge crack", "seed paper, figure 11 (b)", straight_crack_set_up, straight_crack},
     Case{"PF-41", slow, "paper test 2: inclined edge crack", "seed paper, figure 11 (d)", inclined_crack_set_up, inclined_crack},
     Case{"PF-42", slow, "paper test 3: two flaws in compression", "seed paper, figure 11 (f)", two_flaws_set_up, two_flaws},
+    Case{"FD-1", fast, "one joint", "Munjiza, Andrews and White (1999); Mahabadi et al. (2012), closed form", one_joint_set_up, one_joint},
 };
 
 }  // namespace

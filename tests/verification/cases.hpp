@@ -1,4 +1,4 @@
-// The benchmark rows of the phase field: each case measures something, says what it should be, and how far off it may be.
+// The benchmark rows, of the phase field here and of FDEM in fdem/: each case measures something, says what it should be, and how far off it may be.
 #pragma once
 
 #include <span>
