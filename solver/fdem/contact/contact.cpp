@@ -55,11 +55,10 @@ void Contact<Real>::find_touches() {
   touches_.clear();
   places_.clear();
   const std::vector<SideNow>& now = near_.now();
-  for (const SidePair& pair : near_.pairs()) {
+  for (const SidePair& pair : near_.below()) {
     const std::size_t u = static_cast<std::size_t>(pair.target), v = static_cast<std::size_t>(pair.side);
     const ExposedSide &target = surface_.sides()[u], &side = surface_.sides()[v];
-    if (!may_touch(now[u], now[v], side.depth_limit, 0.0) || surface_.same_corner(pair.target, pair.side)) continue;
-    if (!sound(target, now[u]) || !sound(side, now[v])) continue;
+    if (!may_touch(now[u], now[v], side.depth_limit, 0.0) || !sound(target, now[u]) || !sound(side, now[v])) continue;
     const Axes a = axes(now[v]);
     for (std::size_t g = 0; g < point_place.size(); ++g) {
       const PlanePoint p = point_on(now[u], point_place[g]);
@@ -76,6 +75,7 @@ void Contact<Real>::find_touches() {
 template <class Real>
 bool Contact<Real>::belongs_to(const PlanePoint& p, const Place& place, const ExposedSide& side, const Axes& a) const {
   double before_end = a.length - place.along, after_start = place.along;
+  if (before_end < -place.depth || after_start < -place.depth) return false;  // no mitre reaches further out than it is deep
   if (side.next >= 0 && side.joined_end) {
     const SideNow& next = near_.now()[static_cast<std::size_t>(side.next)];
     before_end -= place_of(p, next, axes(next)).along;

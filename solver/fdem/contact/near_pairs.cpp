@@ -9,7 +9,7 @@ namespace {
 
 double larger(double a, double b) { return a > b ? a : b; }
 
-// Largest change of a coordinate; no number if one of them is none.
+// Largest change of a coordinate; what is no number does not count, nor does it touch anything.
 double change(const SideNow& a, const SideNow& b) {
   return larger(larger(std::abs(a.ax - b.ax), std::abs(a.az - b.az)), larger(std::abs(a.bx - b.bx), std::abs(a.bz - b.bz)));
 }
@@ -19,71 +19,117 @@ bool within(double most, double margin) { return 4.0 * std::numbers::sqrt2 * mos
 
 }  // namespace
 
-// Where the known sides are now, and the largest change of a coordinate since the near list was made.
 template <class Real>
-double NearPairs::move(const std::vector<ExposedSide>& sides, const Real* displacement) {
+void NearPairs::place(std::size_t i, const SideNow& undeformed, const Real* u) {
+  const SideNow now{undeformed.ax + static_cast<double>(u[0]), undeformed.az + static_cast<double>(u[1]),
+                    undeformed.bx + static_cast<double>(u[2]), undeformed.bz + static_cast<double>(u[3])};
+  const double ex = point_place.front() * (now.bx - now.ax), ez = point_place.front() * (now.bz - now.az);
+  now_[i] = now;
+  outer_[i] = {{now.ax + ex, now.bx - ex}, {now.az + ez, now.bz - ez}};
+}
+
+// Where the sides are now, and the largest change of a coordinate of the known ones since the near list was made.
+template <class Real>
+double NearPairs::move(const Surface& surface, const Real* displacement) {
+  const SideNow* undeformed = surface.undeformed().data();
+  const int* rows = surface.rows().data();
   double most = 0.0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const ExposedSide& side = sides[i];
-    const Real* u = displacement + side.row;
-    now_[i] = {side.x0 + static_cast<double>(u[0]), side.z0 + static_cast<double>(u[1]), side.x1 + static_cast<double>(u[2]),
-               side.z1 + static_cast<double>(u[3])};
-    if (i < known_) most = larger(most, change(now_[i], at_near_[i]));
+  for (std::size_t i = 0; i < known_; ++i) {
+    place(i, undeformed[i], displacement + rows[i]);
+    most = larger(change(now_[i], at_near_[i]), most);
   }
+  for (std::size_t i = known_; i < now_.size(); ++i) place(i, undeformed[i], displacement + rows[i]);
   return most;
 }
 
 double NearPairs::moved_since(const std::vector<SideNow>& then) const {
   double most = 0.0;
-  for (std::size_t i = 0; i < known_; ++i) most = larger(most, change(now_[i], then[i]));
+  for (std::size_t i = 0; i < known_; ++i) most = larger(change(now_[i], then[i]), most);
   return most;
 }
 
 template <class Real>
 void NearPairs::follow(const Surface& surface, const Real* displacement) {
-  const std::vector<ExposedSide>& sides = surface.sides();
+  const std::size_t all = surface.sides().size();
   before_.swap(now_);
-  now_.resize(sides.size());
+  now_.resize(all), outer_.resize(all);
   const std::size_t placed = before_.size();
-  const double moved = move(sides, displacement);
+  const double moved = move(surface, displacement);
   before_.insert(before_.end(), now_.begin() + static_cast<std::ptrdiff_t>(placed), now_.end());
   if (known_ == 0) {
-    search({sides, now_, far_margin_});
+    search(surface);
   } else if (!within(moved, near_margin_)) {
-    if (known_ < sides.size() || !within(moved_since(at_far_), far_margin_ - near_margin_))
-      search({sides, now_, far_margin_});
+    if (known_ < all || !within(moved_since(at_far_), far_margin_ - near_margin_))
+      search(surface);
     else
-      select({sides, now_, near_margin_});
-  } else if (known_ < sides.size()) {
-    admit({sides, now_, far_margin_});
+      select(surface);
+  } else if (known_ < all) {
+    admit(surface);
   }
+  look();
 }
 
-void NearPairs::search(const SearchScene& scene) {
+void NearPairs::search(const Surface& surface) {
   ++searches_;
-  known_ = scene.sides.size();
-  cells_.find(scene, far_);
+  known_ = surface.sides().size();
+  cells_.find({surface.sides(), now_, far_margin_}, far_);
   at_far_ = now_;
-  select({scene.sides, scene.now, near_margin_});
+  select(surface);
 }
 
-void NearPairs::select(const SearchScene& scene) {
+void NearPairs::select(const Surface& surface) {
   ++selections_;
   near_.clear();
   for (const SidePair& pair : far_) {
     const std::size_t u = static_cast<std::size_t>(pair.target), v = static_cast<std::size_t>(pair.side);
-    if (may_touch(now_[u], now_[v], scene.sides[v].depth_limit, scene.margin)) near_.push_back(pair);
+    if (may_touch(now_[u], now_[v], surface.sides()[v].depth_limit, near_margin_)) near_.push_back(pair);
   }
   at_near_ = now_;
+  cornered_.clear();
+  part(surface);
 }
 
 // Newly exposed sides join lists whose other sides have moved since: those pairs have more margin than they need.
-void NearPairs::admit(const SearchScene& scene) {
-  CellSearch::add(scene, known_, far_);
-  CellSearch::add({scene.sides, scene.now, near_margin_}, known_, near_);
+void NearPairs::admit(const Surface& surface) {
+  CellSearch::add({surface.sides(), now_, far_margin_}, known_, far_);
+  CellSearch::add({surface.sides(), now_, near_margin_}, known_, near_);
   at_far_.insert(at_far_.end(), now_.begin() + static_cast<std::ptrdiff_t>(known_), now_.end());
   at_near_.insert(at_near_.end(), now_.begin() + static_cast<std::ptrdiff_t>(known_), now_.end());
-  known_ = scene.sides.size();
+  known_ = surface.sides().size();
+  near_.insert(near_.end(), cornered_.begin(), cornered_.end());
+  cornered_.clear();
+  std::sort(near_.begin(), near_.end());
+  part(surface);
+}
+
+// Puts aside the near pairs whose sides meet at one corner of one body.
+void NearPairs::part(const Surface& surface) {
+  std::size_t kept = 0;
+  for (const SidePair& pair : near_)
+    if (surface.same_corner(pair.target, pair.side))
+      cornered_.push_back(pair);
+    else
+      near_[kept++] = pair;
+  near_.resize(kept);
+}
+
+// may_touch without margin and depth limit: most pairs are apart, and this is all that is computed of them.
+void NearPairs::look() {
+  below_.resize(near_.size());
+  std::size_t found = 0;
+  for (const SidePair& pair : near_) {
+    const OuterPoints& p = outer_[static_cast<std::size_t>(pair.target)];
+    const SideNow& side = now_[static_cast<std::size_t>(pair.side)];
+    const double ex = side.bx - side.ax, ez = side.bz - side.az;
+    double depth[2], left[2], right[2];  // times the side's length; beside the mitres
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double x = p.x[k] - side.ax, z = p.z[k] - side.az, along = ex * x + ez * z;
+      depth[k] = ex * z - ez * x, left[k] = along + depth[k], right[k] = along - depth[k];
+    }
+    below_[found] = pair;
+    found += (larger(depth[0], depth[1]) > 0.0) & (larger(left[0], left[1]) > 0.0) & (std::min(right[0], right[1]) < ex * ex + ez * ez);
+  }
+  below_.resize(found);
 }
 
 template void NearPairs::follow<float>(const Surface&, const float*);

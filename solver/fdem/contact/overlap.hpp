@@ -46,14 +46,19 @@ inline Place place_of(const PlanePoint& p, const SideNow& side, const Axes& a) {
 }
 
 // May a point of `target` between its outer Gauss points be in contact with `side`, or be after none of their corners moved further than a
-// quarter of `margin`? False only where that is impossible; false, too, where a coordinate is no number.
+// quarter of `margin`? False only where that is impossible; false, too, where a coordinate is no number. Lengths below are times that of
+// the side, so that nothing is divided.
 inline bool may_touch(const SideNow& target, const SideNow& side, double depth_limit, double margin) {
-  const Axes a = axes(side);
-  const Place p = place_of(point_on(target, point_place.front()), side, a), q = place_of(point_on(target, point_place.back()), side, a);
-  const double deepest = std::max(p.depth, q.depth), highest = std::min(p.depth, q.depth);
-  if (!(deepest > -margin && highest < depth_limit + margin)) return false;
-  const double beyond = 2.0 * margin + std::clamp(deepest, 0.0, depth_limit);  // a mitre reaches as far beyond the end as it is deep
-  return std::min(p.along, q.along) < a.length + beyond && std::max(p.along, q.along) > -beyond;
+  const double ex = side.bx - side.ax, ez = side.bz - side.az, square = ex * ex + ez * ez, length = std::sqrt(square);
+  const PlanePoint p = point_on(target, point_place.front()), q = point_on(target, point_place.back());
+  const double px = p.x - side.ax, pz = p.z - side.az, qx = q.x - side.ax, qz = q.z - side.az;
+  const double p_depth = ex * pz - ez * px, q_depth = ex * qz - ez * qx;
+  const double deepest = std::max(p_depth, q_depth), highest = std::min(p_depth, q_depth);
+  if (!(deepest > -margin * length && highest < (depth_limit + margin) * length)) return false;
+  const double p_along = ex * px + ez * pz, q_along = ex * qx + ez * qz, reach = 2.0 * margin * length, most = reach + depth_limit * length;
+  return std::min(p_along, q_along) < square + most && std::max(p_along, q_along) > -most &&
+         std::min(p_along - p_depth, q_along - q_depth) < square + reach &&  // a mitre reaches out as far as it is deep
+         std::max(p_along + p_depth, q_along + q_depth) > -reach;
 }
 
 }  // namespace fracfarm::fdem

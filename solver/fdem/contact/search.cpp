@@ -11,7 +11,10 @@ namespace {
 constexpr double most_stretched = 3.0;  // of a side's undeformed length
 constexpr double furthest = 1e9;        // lengths from the origin
 
-double length_of(const SideNow& now) { return std::hypot(now.bx - now.ax, now.bz - now.az); }
+double square_of(const SideNow& now) {
+  const double x = now.bx - now.ax, z = now.bz - now.az;
+  return x * x + z * z;
+}
 
 long long cell_of(double x, double cell) { return static_cast<long long>(std::floor(x / cell)); }
 
@@ -30,8 +33,8 @@ bool wanted(const SearchScene& scene, int target, int side) {
 }  // namespace
 
 bool sound(const ExposedSide& side, const SideNow& now) {
-  const double length = length_of(now), most = most_stretched * side.length, far = furthest * side.length;
-  return length > 0.0 && length <= most && std::abs(now.ax) < far && std::abs(now.az) < far;
+  const double most = most_stretched * side.length, far = furthest * side.length, square = square_of(now);
+  return square > 0.0 && square <= most * most && std::abs(now.ax) < far && std::abs(now.az) < far;
 }
 
 double reach_of(const SearchScene& scene) {
@@ -65,7 +68,7 @@ void CellSearch::find(const SearchScene& scene, std::vector<SidePair>& pairs) {
   pairs.clear();
   double longest = 0.0;
   for (std::size_t v = 0; v < scene.sides.size(); ++v)
-    if (sound(scene.sides[v], scene.now[v])) longest = std::max(longest, length_of(scene.now[v]));
+    if (sound(scene.sides[v], scene.now[v])) longest = std::max(longest, std::sqrt(square_of(scene.now[v])));
   if (longest == 0.0) return;
   const double reach = reach_of(scene) + 0.5 * longest, cell = longest + reach;
   fill_cells(scene, cell);

@@ -64,7 +64,7 @@ void Surface::expose(const Exposure& exposure) {
 }
 
 void Surface::clear() {
-  order_.clear(), pending_.clear(), sides_.clear();
+  order_.clear(), pending_.clear(), sides_.clear(), undeformed_.clear(), rows_.clear();
   std::fill(place_.begin(), place_.end(), unknown);
 }
 
@@ -81,9 +81,9 @@ void Surface::commit() {
     const Point a = corner(corners_, t, k), b = corner(corners_, t, next_corner(k));
     ExposedSide side;
     side.id = id, side.triangle = t, side.was_joined = exposure.was_joined != 0;
-    side.row = 8 * t + 2 * k;
-    side.force_start = side.row, side.force_end = 8 * t + 2 * next_corner(k);
-    side.x0 = a.x, side.z0 = a.z, side.x1 = b.x, side.z1 = b.z;
+    rows_.push_back(8 * t + 2 * k);
+    undeformed_.push_back({a.x, a.z, b.x, b.z});
+    side.force_start = 8 * t + 2 * k, side.force_end = 8 * t + 2 * next_corner(k);
     side.length = std::hypot(b.x - a.x, b.z - a.z);
     side.depth_limit = depth_share * twice_area(corners_, t) / side.length;
     place_[static_cast<std::size_t>(id)] = static_cast<int>(sides_.size());

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/fdem/contact/overlap.hpp"
+
 namespace fracfarm::fdem {
 
 using TriangleSide = int;  // edge k of triangle t, as 3 t + k, from corner k to corner k + 1, counter-clockwise
@@ -19,13 +21,11 @@ struct ExposedSide {
   TriangleSide id = 0;
   int triangle = 0;
   bool was_joined = false;
-  int row = 0;                            // first of its four numbers in rows of 8: x z of its start, x z of its end
-  int force_start = 0, force_end = 0;     // where the forces of its corners go in rows of 8 (columns 0 to 5)
-  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;  // undeformed ends, m
-  double length = 0.0;                    // undeformed, m
-  double depth_limit = 0.0;               // m, deeper than this below the side is not in contact with it
-  int next = -1, previous = -1;           // places in the list of the sides that bound the same body here, -1: not exposed
-  bool joined_end = false;                // the corner with `next` is one corner of the body, no notch
+  int force_start = 0, force_end = 0;  // where the forces of its corners go in rows of 8 (columns 0 to 5)
+  double length = 0.0;                 // undeformed, m
+  double depth_limit = 0.0;            // m, deeper than this below the side is not in contact with it
+  int next = -1, previous = -1;        // places in the list of the sides that bound the same body here, -1: not exposed
+  bool joined_end = false;             // the corner with `next` is one corner of the body, no notch
   bool joined_start = false;
 };
 
@@ -44,6 +44,9 @@ class Surface {
   void commit();
 
   const std::vector<ExposedSide>& sides() const { return sides_; }
+  const std::vector<SideNow>& undeformed() const { return undeformed_; }  // by place
+  // By place: the first of a side's four numbers in rows of 8, x z of its start, x z of its end.
+  const std::vector<int>& rows() const { return rows_; }
   const std::vector<Exposure>& order() const { return order_; }  // as exposed, committed ones first
   std::size_t committed() const { return sides_.size(); }
   int place(TriangleSide side) const { return place_[static_cast<std::size_t>(side)]; }  // in sides(), -1: not exposed
@@ -64,6 +67,8 @@ class Surface {
   std::span<const TriangleSide> neighbour_;
   std::vector<Exposure> order_, pending_;
   std::vector<ExposedSide> sides_;
+  std::vector<SideNow> undeformed_;
+  std::vector<int> rows_;
   std::vector<int> place_;  // by side; -1 unknown, -2 pending
   double mean_length_ = 0.0;
 };
