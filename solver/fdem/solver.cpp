@@ -13,8 +13,6 @@ using Index = std::size_t;
 
 constexpr int chunk_blocks = 64;
 
-double outward(Side side) { return side == Side::right || side == Side::top ? 1.0 : -1.0; }
-
 // job(chunk, blocks) over all blocks in chunks; the sums come back in the order of the chunks.
 template <class Sums, class Job>
 std::vector<Sums> in_chunks(int blocks, int threads, const Job& job) {
@@ -97,167 +95,11 @@ void Fdem<Real>::join(double time) {
 }
 
 template <class Real>
-void Fdem<Real>::note_breaks(double time) {
-  for (int b = 0; b < plan_.joint_blocks(); ++b) {
-    if (!(state_.joint_state[static_cast<Index>(b)] & joint_broke)) continue;
-    for (int l = 0; l < lanes; ++l) {
-      const Index at = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
-      const int edge = plan_.edge_of[static_cast<Index>(b * lanes + l)];
-      if (edge < 0 || state_.damage[at] < Real(1) || state_.damage[at + lanes] < Real(1)) continue;
-      double& broke = state_.break_time[static_cast<Index>(edge)];
-      if (!std::isnan(broke)) continue;
-      broke = time, state_.break_mode[static_cast<Index>(edge)] = static_cast<unsigned char>(mode_of(b, l));
-      expose(plan_.left_side[static_cast<Index>(b * lanes + l)]), expose(plan_.right_side[static_cast<Index>(b * lanes + l)]);
-    }
-  }
-}
-
-template <class Real>
-void Fdem<Real>::expose(int side) {
-  contact_.expose(side);
-  state_.exposed.push_back(side);
-  watch_side(side);
-}
-
-// Forces of contact come in by the triangle's row of `extra`.
-template <class Real>
-void Fdem<Real>::watch_side(int side) {
-  const int slot = side / 3;
-  scratch_.needs[static_cast<Index>(slot / lanes)] |= needs_extra;
-  scratch_.extra_slots.push_back(slot);
-}
-
-// The faces of initial cracks, once two of them overlap: before, contact has nothing to do.
-template <class Real>
-void Fdem<Real>::expose_cracks_that_close() {
-  if (state_.cracks_exposed || (rules_.contact_after_break && !a_crack_closes())) return;
-  state_.cracks_exposed = 1;
-  for (const int side : plan_.crack_sides) expose(side);
-}
-
-template <class Real>
-bool Fdem<Real>::a_crack_closes() const {
-  for (Index i = 0; i + 1 < plan_.crack_sides.size(); i += 2) {
-    const int row = row_of_side(plan_.crack_sides[i]);
-    const Real *left = &scratch_.rows[static_cast<Index>(row)],
-               *right = &scratch_.rows[static_cast<Index>(row_of_side(plan_.crack_sides[i + 1]))];
-    const double* corners = &plan_.corner_rows[static_cast<Index>(row)];
-    const Real x = static_cast<Real>(corners[2] - corners[0]), z = static_cast<Real>(corners[3] - corners[1]);
-    if ((right[2] - left[0]) * z < (right[3] - left[1]) * x || (right[0] - left[2]) * z < (right[1] - left[3]) * x) return true;
-  }
-  return false;
-}
-
-// By the shares of opening and sliding, each of what breaks the joint alone, in their squares: three quarters of one name it.
-template <class Real>
-BreakMode Fdem<Real>::mode_of(int b, int l) const {
-  const Index joint = static_cast<Index>(b * lanes + l), line = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
-  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[joint])],
-             *right = &scratch_.rows[static_cast<Index>(plan_.right_row[joint])];
-  double x = plan_.along[line], z = plan_.along[line + lanes];
-  x += 0.5 * ((double(left[2]) - left[0]) + (double(right[0]) - right[2]));
-  z += 0.5 * ((double(left[3]) - left[1]) + (double(right[1]) - right[3]));
-  const double ends[2][2] = {{double(right[2]) - left[0], double(right[3]) - left[1]},
-                             {double(right[0]) - left[2], double(right[1]) - left[3]}};
-  const auto& law = plan_.joint_laws[static_cast<Index>(plan_.joint_law_of_block[static_cast<Index>(b)])];
-  double opens = 0.0, slides = 0.0;
-  for (const auto& [dx, dz] : ends) {
-    const double n = std::max(0.0, dx * z - dz * x) * law.per_rupture_n, t = (dx * x + dz * z) * law.per_rupture_t;
-    opens += n * n, slides += t * t;
-  }
-  const double share = opens / std::max(opens + slides, 1e-300);
-  return share >= 0.75 ? BreakMode::tension : share <= 0.25 ? BreakMode::shear : BreakMode::mixed;
-}
-
-template <class Real>
 void Fdem<Real>::put_rows() {
   for (int slot = 0; slot < plan_.slots; ++slot)
     for (int k = 0; k < 4; ++k)
       for (int axis = 0; axis < 2; ++axis)
         scratch_.rows[static_cast<Index>(slot * row_size + 2 * k + axis)] = state_.u[at_corner(3 * slot + k % 3, axis)];
-}
-
-template <class Real>
-void Fdem<Real>::tell_velocities(double time) {
-  std::vector<Real> velocity;
-  for (const Told& told : body_.told) velocity.push_back(static_cast<Real>(told.velocity(time)));
-  for (const ToldDof& dof : model_.told_dofs) scratch_.told_velocity[dof.at_told] = velocity[static_cast<Index>(dof.motion)];
-}
-
-template <class Real>
-void Fdem<Real>::pull(double time) {
-  for (const int slot : scratch_.extra_slots) std::fill_n(&state_.extra[static_cast<Index>(slot) * row_size], row_size, Real(0));
-  std::vector<double> share;
-  for (const Pull& pull : body_.pulls) share.push_back(pull.share(time));
-  for (const PulledCorner& pulled : model_.pulled) {
-    const double grown = pulled.pull < 0 ? 1.0 : share[static_cast<Index>(pulled.pull)];
-    state_.extra[in_row(pulled.corner, 0)] += static_cast<Real>(grown * pulled.fx);
-    state_.extra[in_row(pulled.corner, 1)] += static_cast<Real>(grown * pulled.fz);
-  }
-}
-
-// Corners that are tied together get the velocity of their common momentum, which is that of one node with all their masses and forces.
-template <class Real>
-void Fdem<Real>::move_as_one(double dt) {
-  for (const auto& group : plan_.ties)
-    for (int axis = 0; axis < 2; ++axis) {
-      double mass = 0.0, momentum = 0.0;
-      for (const int corner : group) {
-        const double m = corner_mass(plan_, corner);
-        mass += m, momentum += m * static_cast<double>(state_.v[at_corner(corner, axis)]);
-      }
-      const Real together = static_cast<Real>(momentum / mass), own = state_.v[at_corner(group.front(), axis)];
-      const Real u = state_.u[at_corner(group.front(), axis)] + static_cast<Real>(dt) * (together - own);
-      for (const int corner : group) {
-        state_.v[at_corner(corner, axis)] = together, state_.u[at_corner(corner, axis)] = u;
-        scratch_.rows[in_row(corner, axis)] = u;
-        if (corner % 3 == 0) scratch_.rows[in_row(corner, axis) + 6] = u;
-      }
-    }
-}
-
-template <class Real>
-void Fdem<Real>::remember_told() const {
-  for (Index i = 0; i < model_.told_dofs.size(); ++i) scratch_.told_before[i] = static_cast<double>(state_.v[model_.told_dofs[i].at]);
-}
-
-// What held nodes get from outside at an instant is R = m (v+ - v-) / dt - f, with v- and v+ half a step before and after. Its share of the
-// work of the step before is dt/2 v- R, of the step after dt/2 v+ R: with 1/2 m v- v+ as kinetic energy the ledger closes exactly.
-template <class Real>
-Powers Fdem<Real>::power_of_told(double dt) const {
-  Powers powers{};
-  for (Index i = 0; i < model_.told_dofs.size(); ++i) {
-    const ToldDof& dof = model_.told_dofs[i];
-    const double before = scratch_.told_before[i], after = scratch_.told_velocity[dof.at_told];
-    const double force = dof.mass * (after - before) / dt - static_cast<double>(scratch_.told_force[dof.at_told]);
-    powers.before += force * before, powers.after += force * after;
-  }
-  return powers;
-}
-
-template <class Real>
-double Fdem<Real>::power_of_pulls(double time) const {
-  double power = 0.0;
-  for (const PulledCorner& p : model_.pulled) {
-    const double grown = p.pull < 0 ? 1.0 : body_.pulls[static_cast<Index>(p.pull)].share(time);
-    power += grown *
-             (p.fx * static_cast<double>(state_.v[at_corner(p.corner, 0)]) + p.fz * static_cast<double>(state_.v[at_corner(p.corner, 1)]));
-  }
-  return power;
-}
-
-template <class Real>
-std::array<double, 4> Fdem<Real>::reactions(double dt) const {
-  std::array<double, 4> sums{};
-  for (Index i = 0; i < model_.told_dofs.size(); ++i) {
-    const ToldDof& dof = model_.told_dofs[i];
-    const auto& side = body_.told[static_cast<Index>(dof.motion)].side;
-    if (!side) continue;
-    const double change = scratch_.told_velocity[dof.at_told] - scratch_.told_before[i];
-    sums[static_cast<Index>(*side)] += outward(*side) * (dof.mass * change / dt - static_cast<double>(scratch_.told_force[dof.at_told]));
-  }
-  for (Index side = 0; side < 4; ++side) sums[side] = body_.side_length[side] > 0.0 ? sums[side] / body_.side_length[side] : 0.0;
-  return sums;
 }
 
 // The velocities half a step before t = 0 that the initial ones and the forces at t = 0 ask for.
