@@ -20,13 +20,15 @@ struct Turn {
   Real per_trace;  // 1 / tr U
 };
 
-// cos - 1 = -b^2 / (n (n + 2 + a)) with a = H11 + H22, b = H21 - H12, n = tr U.
+// cos - 1 = -b^2 / (n (n + 2 + a)) with a = H11 + H22, b = H21 - H12, n = tr U; past a quarter turn, where n + 2 + a would cancel and be 0
+// at a half turn, -(n - 2 - a) / n.
 template <class Real>
 FRACFARM_POINTWISE Turn<Real> turn(const Gradient<Real>& H) {
   const Real b = H.zx - H.xz, trace = Real(2) + (H.xx + H.zz);
   const Real n = sqrt(trace * trace + b * b);
-  const Real both = n + trace, scale = Real(1) / (n * both);
-  const Real per_trace = scale * both, c1 = -(b * b) * scale;
+  const auto ahead = trace > Real(0);
+  const Real both = n + select(ahead, trace, -trace), scale = Real(1) / (n * both);
+  const Real per_trace = scale * both, c1 = -(select(ahead, b * b, both * both) * scale);
   return {c1, Real(1) + c1, b * per_trace, per_trace};
 }
 
