@@ -192,7 +192,8 @@ fs::path write_campaign(const Options& options) {
   const fs::path file = options.folder / "campaign.json";
   const std::uint64_t patterns = options.jobs / 10;
   std::ofstream(file) << fmt::format(
-      R"({{"name": "throughput", "seed": 7, "jobs": [{{"method": "{}", "materials": ["pbx", "steel", "aluminum", "tungsten", "shale"], "loads": ["uniaxial", "biaxial"], "patterns": {{"orthogonal": "1-{}"}}}}]}})",
+      R"({{"name": "throughput", "seed": 7, "jobs": [{{"method": "{}", "materials": ["pbx", "steel", "aluminum", "tungsten", "shale"],
+    "loads": ["uniaxial", "biaxial"], "patterns": {{"orthogonal": "1-{}"}}}}]}})",
       options.method, patterns);
   return file;
 }
