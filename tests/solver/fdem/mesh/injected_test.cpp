@@ -100,13 +100,13 @@ TEST_CASE("numbers that are none and sizes that cannot be are refused with a rea
 
 TEST_CASE("five hundred cracks on top of each other are meshed or refused") {
   RandomStream random(5, 1, 1);
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 2; ++round) {
     std::vector<Segment> cracks;
     for (int i = 0; i < 500; ++i) {
       const double x = random.uniform(0.0, 0.25), z = random.uniform(0.0, 0.25);
       cracks.push_back({x, z, x + random.uniform(-0.03, 0.03), z + (round == 0 ? 0.002 : random.uniform(-0.03, 0.03))});
     }
-    const std::string verdict = verdict_on({0.25, 0.25, h, 1, cracks, {}}, 1.5);
+    const std::string verdict = verdict_on({0.25, 0.25, 0.005, 1, cracks, {}}, 1.5);
     CHECK((verdict == "made" || verdict == "refused"));
   }
 }
