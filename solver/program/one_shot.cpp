@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <iostream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "common/base/atomic_file.hpp"
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
@@ -14,41 +11,16 @@
 #include "common/base/text.hpp"
 #include "common/scene/parse.hpp"
 #include "solver/program/run_task.hpp"
+#include "solver/program/scene_file.hpp"
 
 namespace fracfarm {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t scene_limit = std::uint64_t{16} << 20;  // bytes
-constexpr double patience_s = 2.0;                              // runs that are shorter show no progress
+constexpr double patience_s = 2.0;  // runs that are shorter show no progress
 
 void print_json(const Json& json) { fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace)); }
-
-Result<std::string> scene_text(const std::string& path) {
-  if (path != "-") return read_file(path, scene_limit);
-  std::string text(std::istreambuf_iterator<char>(std::cin), {});
-  if (text.size() > scene_limit)
-    return fail(Fault::bad_request, fmt::format("the scene has {} bytes, the limit is {}", text.size(), scene_limit));
-  return text;
-}
-
-int report_problems(const Problems& problems, const OneShot& options) {
-  if (options.json) {
-    Json list = Json::array();
-    for (const Problem& p : problems)
-      list.push_back({{"key", p.key}, {"value", p.value}, {"limit", p.limit}, {"suggestion", p.suggestion}});
-    print_json({{"schema", "fracfarm.problems/1"}, {"what", options.scene}, {"problems", list}});
-    return exit_bad_input;
-  }
-  fmt::print(stderr, "{} {}: {} problem{}\n", ink("error:", Ink::red, stderr), options.scene, problems.size(),
-             problems.size() == 1 ? "" : "s");
-  for (const Problem& p : problems) {
-    fmt::print(stderr, "  {} = {}; allowed: {}{}{}\n", ink(p.key, Ink::bold, stderr), p.value, p.limit, p.suggestion.empty() ? "" : "; ",
-               p.suggestion);
-  }
-  return exit_bad_input;
-}
 
 // A run that diverged still answers in the shape of a summary, with the evidence beside it.
 int report_error(const Error& error, int status, const OneShot& options) {
@@ -121,7 +93,7 @@ int solve_one(const OneShot& options) {
   const Result<std::string> text = scene_text(options.scene);
   if (!text) return report_error(text.error(), exit_bad_input, options);
   const Parsed<Scene> scene = parse_scene(*text);
-  if (!scene) return report_problems(scene.error(), options);
+  if (!scene) return report_problems(scene.error(), options.scene, options.json);
   if (!options.quiet)
     for (const std::string& warning : scene_warnings(*scene)) fmt::print(stderr, "{} {}\n", ink("warning:", Ink::yellow, stderr), warning);
   Task task;
