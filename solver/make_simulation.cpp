@@ -1,5 +1,6 @@
 #include "solver/make_simulation.hpp"
 
+#include "common/base/clock.hpp"
 #include "solver/break_watch.hpp"
 #include "solver/fdem/fdem.hpp"
 #include "solver/fdem/mesh/scene_mesh.hpp"
@@ -9,9 +10,12 @@ namespace fracfarm {
 namespace {
 
 Result<MadeSimulation> on_a_mesh(const Scene& scene, const RunControl& control) {
+  SystemClock clock;
+  const double begun_s = clock.monotonic_s();
   Result<fdem::MeshResult> mesh = fdem::mesh_of(scene);
   if (!mesh) return tl::unexpected(mesh.error());
   MadeSimulation made;
+  const double meshed_s = clock.monotonic_s();
   if (!*mesh) {
     made.rejected = mesh->error();
     return made;
@@ -19,6 +23,7 @@ Result<MadeSimulation> on_a_mesh(const Scene& scene, const RunControl& control) 
   std::unique_ptr<MeshSimulation> simulation = make_fdem(scene, std::move((*mesh)->mesh), control.rules, control.threads);
   made.dt = scene.fdem.dt.value_or(scene.fdem.dt_fraction * simulation->stable_dt());
   made.watch = std::make_unique<BreakWatch>(*simulation);
+  made.stages = {{"mesh", meshed_s - begun_s}, {"model", clock.monotonic_s() - meshed_s}};
   made.simulation = std::move(simulation);
   return made;
 }

@@ -12,6 +12,7 @@ struct MadeSimulation {
   std::unique_ptr<Watch> watch;
   double dt = 0.0;  // s, as the scene asks, before RunControl::step_scale
   std::string rejected;
+  std::map<std::string, double> stages;  // seconds of making a mesh and what stands on it
 };
 
 // Errors: BAD_REQUEST where the scene's mesh file cannot be read or is another one.

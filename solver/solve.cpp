@@ -21,11 +21,18 @@ constexpr double checkpoint_interval_s = 300.0;  // a killed run loses at most t
 
 enum class End { none, failure, horizon, wall_clock, step_budget, stopped };
 
+// When a run began, before its mesh was made.
+struct Begin {
+  double wall_s, cpu_s;
+};
+
 class Run {
  public:
-  Run(const Scene& scene, const RunControl& control, MadeSimulation made)
+  Run(const Scene& scene, const RunControl& control, MadeSimulation made, Begin begin)
       : scene_(scene),
         control_(control),
+        begin_(begin),
+        making_(std::move(made.stages)),
         simulation_(std::move(made.simulation)),
         dt_(control.step_scale * made.dt),
         last_step_(std::max(1LL, static_cast<long long>(std::ceil(scene.horizon / dt_ - 1e-9)))),
@@ -92,9 +99,10 @@ class Run {
     result.series = series;
     result.steps = n_, result.dt = dt_;
     result.energy_residual = log_.worst_residual();
-    result.cpu_s = cpu_before_s_ + thread_cpu_s() - cpu_start_s_;
+    result.cpu_s = cpu_before_s_ + thread_cpu_s() - begin_.cpu_s;
     result.wall_s = wall_before_s_ + elapsed_s();
     result.stages = simulation_->stage_seconds();
+    result.stages.insert(making_.begin(), making_.end());
     result.kernel = simulation_->kernel();
   }
 
@@ -106,7 +114,7 @@ class Run {
     if (control_.checkpoint.empty()) return {};
     ArchiveWriter archive;
     archive.put(n_);
-    archive.put(cpu_before_s_ + thread_cpu_s() - cpu_start_s_);
+    archive.put(cpu_before_s_ + thread_cpu_s() - begin_.cpu_s);
     archive.put(wall_before_s_ + elapsed_s());
     archive.put_array(damage_initial_);
     simulation_->save(archive);
@@ -158,13 +166,13 @@ class Run {
     return fail(error.fault, fmt::format("{}; at step {}, {:.6g} s, dt {:.6g} s", error.message, n_, static_cast<double>(n_) * dt_, dt_));
   }
 
-  double elapsed_s() { return clock_.monotonic_s() - start_s_; }
+  double elapsed_s() { return clock_.monotonic_s() - begin_.wall_s; }
 
   const Scene& scene_;
   const RunControl& control_;
   SystemClock clock_;
-  const double start_s_ = clock_.monotonic_s();
-  const double cpu_start_s_ = thread_cpu_s();
+  const Begin begin_;
+  const std::map<std::string, double> making_;  // seconds before the first step
   std::unique_ptr<Simulation> simulation_;
   double dt_;
   long long last_step_;
@@ -184,10 +192,11 @@ RunResult rejected_run(const std::string& reason) {
 }
 
 Result<RunResult> run_once(const Scene& scene, const RunControl& control) {
+  const Begin begin{SystemClock().monotonic_s(), thread_cpu_s()};
   Result<MadeSimulation> made = make_simulation(scene, control);
   if (!made) return tl::unexpected(made.error());
   if (!made->simulation) return rejected_run(made->rejected);
-  return Run(scene, control, std::move(*made)).go();
+  return Run(scene, control, std::move(*made), begin).go();
 }
 
 // What is tried next after SOLVER_NUMERIC, in words; nothing where the scene does not let it or all was tried.
