@@ -54,7 +54,9 @@ json block_json(const JobBlock& block) {
     if (std::string text = range_text(block, set); !text.empty()) patterns[std::string(name_of(set))] = std::move(text);
   json set = json::object();
   for (const SettingAxis& axis : block.set) set[axis.key] = axis_json(axis);
-  return {{"method", name_of(block.method)}, {"materials", block.materials}, {"loads", block.loads}, {"patterns", patterns}, {"set", set}};
+  json out{{"method", name_of(block.method)}, {"patterns", patterns}, {"set", set}};
+  if (block.method != Method::drill) out.update({{"materials", block.materials}, {"loads", block.loads}});
+  return out;
 }
 
 }  // namespace
@@ -100,6 +102,7 @@ JobSpec job_at(const Campaign& campaign, std::uint64_t index) {
 }
 
 Parsed<Scene> try_scene_of(const Campaign& campaign, const JobSpec& job) {
+  if (job.method == Method::drill) return drill_sample({.set = job.set, .seed = campaign.seed, .id = job.sample_id}, job.settings);
   const SampleChoice choice{.material = find_material(job.material),
                             .load = find_load(job.load),
                             .set = job.set,

@@ -159,19 +159,33 @@ void read_set(Fields& block_fields, JobBlock& block) {
   }
 }
 
+// Materials and loads; a drill has neither.
+void read_bodies(Fields& fields, JobBlock& block) {
+  if (block.method == Method::drill) {
+    fields.only("materials", no_material);
+    fields.only("loads", no_load);
+    block.materials = {std::string(no_material)};
+    block.loads = {std::string(no_load)};
+    return;
+  }
+  fields.require({"materials", "loads"});
+  std::vector<std::string_view> materials, loads;
+  for (const Material& row : material_table()) materials.push_back(row.name);
+  for (const NamedLoad& row : named_loads) loads.push_back(row.name);
+  block.materials = read_words(fields, "materials", materials);
+  block.loads = read_words(fields, "loads", loads);
+}
+
 }  // namespace
 
 JobBlock read_block(const json& value, const std::string& path, ProblemList& problems) {
   JobBlock block;
   Fields fields(value, path, problems);
-  fields.require({"method", "materials", "loads", "patterns"});
-  std::vector<std::string_view> materials, loads;
-  for (const Material& row : material_table()) materials.push_back(row.name);
-  for (const NamedLoad& row : named_loads) loads.push_back(row.name);
-  static constexpr std::array<Word<Method>, 2> methods{{{"phase_field", Method::phase_field}, {"fdem", Method::fdem}}};
-  fields.word("method", methods, block.method, {"drill"});
-  block.materials = read_words(fields, "materials", materials);
-  block.loads = read_words(fields, "loads", loads);
+  fields.require({"method", "patterns"});
+  static constexpr std::array<Word<Method>, 3> methods{
+      {{"phase_field", Method::phase_field}, {"fdem", Method::fdem}, {"drill", Method::drill}}};
+  fields.word("method", methods, block.method);
+  read_bodies(fields, block);
   read_patterns(fields, block);
   read_set(fields, block);
   fields.done();

@@ -5,6 +5,7 @@
 #include "common/scene/json_text.hpp"
 #include "common/scene/parse.hpp"
 #include "common/scene/parse_parts.hpp"
+#include "common/scene/pattern.hpp"
 
 namespace fracfarm {
 namespace {
@@ -51,7 +52,9 @@ json scene_json(const Scene& scene) {
 
 }  // namespace
 
-std::string canonical_text(const Scene& scene) { return compact_text(scene_json(scene)); }
+std::string canonical_text(const Scene& scene) {
+  return compact_text(scene.method == Method::drill ? drill_json(scene) : scene_json(scene));
+}
 
 // A line break cannot stand in canonical text, so no two pairs give the same bytes.
 std::string job_key(std::string_view canonical_scene, std::string_view build_id) {
@@ -65,6 +68,9 @@ std::string_view name_of(Method method) { return spelled(method_words, method); 
 std::string_view name_of(CrackSet set) { return spelled(crack_set_words, set); }
 std::string_view name_of(Side side) { return spelled(side_words, side); }
 
-std::string material_name(const Scene& scene) { return scene.layers.size() == 1 ? scene.layers[0].material.name : "layers"; }
+std::string material_name(const Scene& scene) {
+  if (scene.layers.empty()) return std::string(no_material);
+  return scene.layers.size() == 1 ? scene.layers[0].material.name : "layers";
+}
 
 }  // namespace fracfarm

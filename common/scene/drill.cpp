@@ -1,5 +1,5 @@
-// Scenes that simulate nothing: method "drill" rehearses what can go wrong on a farm (FARM.md). Such a scene has no body, no material and no
-// loads; its one block says what its job does instead.
+// Scenes that simulate nothing: method "drill" rehearses what can go wrong on a farm (FARM.md). Such a scene has no body, no material and
+// no loads; its one block says what its job does instead.
 #include <nlohmann/json.hpp>
 
 #include "common/scene/json_text.hpp"

@@ -163,12 +163,13 @@ void check_method(Scene& scene, ProblemList& problems) {
 }  // namespace
 
 Parsed<Scene> scene_from_json(const json& file) {
+  if (is_drill(file)) return drill_from_json(file);
   ProblemList problems;
   Scene scene;
   Fields top(file, "", problems);
   top.require({"method", "domain", "material"});
   top.only("schema", scene_schema);  // a file without it is of the first version
-  top.word("method", method_words, scene.method, {"drill"});
+  top.word("method", method_words, scene.method);
   read_domain(top, scene);
   read_methods(top, scene);
   if (const json* material = top.value("material")) scene.layers = read_layers(*material, scene.height, width_needed(scene), problems);

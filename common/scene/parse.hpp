@@ -24,10 +24,11 @@ std::string canonical_text(const Scene& scene);
 std::string job_key(std::string_view canonical_scene, std::string_view build_id);
 
 std::string_view name_of(Method method);
+std::string_view name_of(DrillAct act);
 std::string_view name_of(CrackSet set);
 std::string_view name_of(Side side);
 
-// "pbx", or "layers" where there is more than one.
+// "pbx", "layers" where there is more than one, "none" where a drill has no body.
 std::string material_name(const Scene& scene);
 
 // Conditions that SCENES.md allows but a user should know of, one sentence each: w_0/h < 1, nu -> 1/2, cracks closer than 4 w_0, dt

@@ -42,8 +42,23 @@ void check_fdem(const Scene& scene, ProblemList& problems);
 nlohmann::json fdem_json(const Scene& scene);
 double triangle_count(const Scene& scene);  // about
 
+// Scenes of method drill, which have no body: their whole grammar.
+bool is_drill(const nlohmann::json& file);
+Parsed<Scene> drill_from_json(const nlohmann::json& file);
+nlohmann::json drill_json(const Scene& scene);
+
 // Spellings of files; name_of() prints by them too.
-inline constexpr std::array<Word<Method>, 2> method_words{{{"phase_field", Method::phase_field}, {"fdem", Method::fdem}}};
+inline constexpr std::array<Word<Method>, 3> method_words{
+    {{"phase_field", Method::phase_field}, {"fdem", Method::fdem}, {"drill", Method::drill}}};
+inline constexpr std::array<Word<DrillAct>, 9> drill_act_words{{{"sleep", DrillAct::sleep},
+                                                                {"crash", DrillAct::crash},
+                                                                {"hang", DrillAct::hang},
+                                                                {"leak", DrillAct::leak},
+                                                                {"truncated", DrillAct::truncated},
+                                                                {"bit_flipped", DrillAct::bit_flipped},
+                                                                {"wrong_job", DrillAct::wrong_job},
+                                                                {"nan", DrillAct::nan},
+                                                                {"ignore_term", DrillAct::ignore_term}}};
 inline constexpr std::array<Word<FdemTier>, 3> tier_words{
     {{"reference", FdemTier::reference}, {"fast", FdemTier::fast}, {"screening", FdemTier::screening}}};
 inline constexpr std::array<Word<Softening>, 2> softening_words{{{"munjiza", Softening::munjiza}, {"linear", Softening::linear}}};

@@ -66,4 +66,10 @@ using Setting = std::pair<std::string, std::string>;
 // sample (schema, method, sample) cannot be set.
 Parsed<Scene> sample_scene_with(const SampleChoice& choice, PatternSettings settings, std::span<const Setting> over);
 
+// What a drill has instead of a material and a load.
+inline constexpr std::string_view no_material = "none", no_load = "none";
+Scene drill_scene(const DrillSettings& drill);
+// The drill of one sample of a campaign; settings are keys of its drill block. Set, seed and id of the choice tell jobs apart, nothing else.
+Parsed<Scene> drill_sample(const SampleChoice& choice, std::span<const Setting> settings);
+
 }  // namespace fracfarm

@@ -155,6 +155,7 @@ void warn_fdem(const Scene& scene, std::vector<std::string>& out) {
 
 std::vector<std::string> scene_warnings(const Scene& scene) {
   std::vector<std::string> out;
+  if (scene.method == Method::drill) return {"a drill: nothing is simulated"};
   scene.method == Method::fdem ? warn_fdem(scene, out) : warn_phase_field(scene, out);
   if (scene.frame_interval > scene.horizon)
     out.push_back("the frame interval is longer than the horizon: only the first and the failure state are stored");

@@ -38,6 +38,9 @@ int run_priority(int argc, char** argv);
 int run_cancel(int argc, char** argv);
 int run_drain(int argc, char** argv);
 
+// drill_verb.cpp
+int run_drill(int argc, char** argv);
+
 // extract_verb.cpp, report_verb.cpp
 int run_extract(int argc, char** argv);
 int run_report(int argc, char** argv);
@@ -77,6 +80,7 @@ constexpr auto table = std::to_array<Verb>({
     {"backup", "Keep", "copy the ledger while it is in use", run_backup},
     {"restore", "Keep", "put a copy back, and adopt what the shards have since", run_restore},
     {"rebuild", "Keep", "make a ledger from the shards alone", run_rebuild},
+    {"drill", "Keep", "rehearse every fault on a farm of its own", run_drill},
     {"solve", "One simulation", "solve one scene and write its record", nullptr},
     {"mesh", "One simulation", "make, measure and draw the FDEM mesh of a scene", nullptr},
     {"check", "One simulation", "is this record sound: name every broken rule", run_check},

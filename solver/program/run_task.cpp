@@ -4,6 +4,7 @@
 
 #include <new>
 
+#include "solver/program/drill.hpp"
 #include "solver/program/outcome.hpp"
 #include "solver/program/signals.hpp"
 
@@ -11,6 +12,7 @@ namespace fracfarm {
 namespace {
 
 Result<TaskEnd> solve_and_write(const Task& task, const Scene& scene, Keeping keeping, const Progress& progress) {
+  if (scene.method == Method::drill) return run_drill(task, scene, keeping, progress);
   RunControl control;
   control.checkpoint = task.checkpoint;
   control.checkpoint_key = task.key;

@@ -188,7 +188,7 @@ TEST_CASE("all mistakes of a campaign are reported at once, with file, line, key
   const Problems problems = problems_of(R"(name = "de mo"
 sede = 1
 [[jobs]]
-method = "fdem"
+method = "fdm"
 materials = ["pbx", "steal", "pbx"]
 loads = ["triaxial"]
 patterns = { orthogonal = "5-2", obliqe = "1" }
@@ -205,7 +205,7 @@ wall_clock = "eight"
   CHECK(has("c.toml:1: name", ""));
   CHECK(has("c.toml:2: sede", "did you mean 'seed'?"));
   CHECK(has("c.toml: seed", ""));
-  CHECK(has("c.toml:4: jobs[0].method", "this build has no 'fdem'"));
+  CHECK(has("c.toml:4: jobs[0].method", "did you mean 'fdem'?"));
   CHECK(has("c.toml:5: jobs[0].materials[1]", "did you mean 'steel'?"));
   CHECK(has("c.toml:5: jobs[0].materials[2]", "remove it"));
   CHECK(has("c.toml:6: jobs[0].loads[0]", "did you mean 'uniaxial'?"));
@@ -308,4 +308,29 @@ TEST_CASE("4,000 broken campaigns are answered, never crashed on") {
     const Parsed<Campaign> campaign = parse_campaign(text, "c.toml");
     if (!campaign) CHECK_FALSE(campaign.error().empty());
   }
+}
+
+TEST_CASE("a campaign of drills has acts as its axis, no materials and no loads") {
+  const std::string text = R"(name = "drill"
+seed = 1
+[[jobs]]
+method = "drill"
+patterns = { orthogonal = "1-3" }
+set = { "drill.act" = ["sleep", "crash"], "drill.attempts" = 1 }
+)";
+  const Campaign campaign = campaign_of(text);
+  REQUIRE(job_count(campaign) == 6);
+  std::set<std::string> texts;
+  for (std::uint64_t i = 0; i < 6; ++i) texts.insert(canonical_text(scene_of(campaign, job_at(campaign, i))));
+  CHECK(texts.size() == 6);
+  CHECK(job_at(campaign, 1).material == "none");
+  CHECK(scene_of(campaign, job_at(campaign, 1)).drill == DrillSettings{DrillAct::crash, 0.0, 1});
+  CHECK(canonical_text(campaign_of(canonical_text(campaign))) == canonical_text(campaign));
+  const auto refused = [&](const std::string& line) {
+    std::string wrong = text;
+    return problems_of(wrong.insert(wrong.find("patterns"), line + "\n")).size();
+  };
+  CHECK(refused("materials = [\"pbx\"]") == 1);
+  CHECK(refused("loads = \"uniaxial\"") == 1);
+  CHECK(refused("materials = \"none\"\nloads = \"none\"") == 0);
 }

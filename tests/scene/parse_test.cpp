@@ -122,10 +122,6 @@ TEST_CASE("cells are two positive integers") {
   CHECK(problem_at(with("/phase_field/cells", {127, 5}), "phase_field.cells").suggestion == "squares need [127, 102]");
 }
 
-TEST_CASE("what a later build will have is refused by name") {
-  CHECK(problem_at(with("/method", "drill"), "method").suggestion == "this build has no 'drill'");
-}
-
 TEST_CASE("a block of the other method is let through only with that method's keys") {
   CHECK(scene_of(with("/fdem", {{"tier", "fast"}})) == scene_of(good_scene()));
   CHECK(problem_at(with("/fdem", {{"teir", "fast"}}), "fdem.teir").suggestion == "did you mean 'tier'?");
