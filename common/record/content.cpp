@@ -44,9 +44,10 @@ struct MethodRow {
   std::span<const content::Rule> (*rules)();
 };
 
-constexpr std::array<MethodRow, 2> methods{{
+constexpr std::array<MethodRow, 3> methods{{
     {"phase_field", [](const Record& r) { return content::broken_fields(r.phase_field); }, phase_field_context, content::phase_field_rules},
     {"fdem", [](const Record& r) { return content::broken_fields(r.fdem); }, fdem_context, content::fdem_rules},
+    {"drill", [](const Record& r) { return content::broken_fields(r.phase_field); }, phase_field_context, content::phase_field_rules},
 }};
 
 const MethodRow* row_of(std::string_view method) {

@@ -103,9 +103,10 @@ struct MethodRow {
   std::vector<AttributeRow> (*attributes)();
 };
 
-constexpr std::array<MethodRow, 2> methods{{
+constexpr std::array<MethodRow, 3> methods{{
     {"phase_field", phase_field_frames, phase_field_attributes},
     {"fdem", fdem_frames, fdem_attributes},
+    {"drill", phase_field_frames, phase_field_attributes},  // four nodes at time 0
 }};
 
 struct Layout {

@@ -118,7 +118,7 @@ Result<TaskEnd> write_nothing(const Task& task, const Scene& scene, Keeping keep
   end.summary.failure_rule = drill_rule;
   end.summary.wall_s = wall_s;
   end.summary.kernel = "none";
-  Record record = nothing_happened(task, scene, judge(no_times(), drill_rule));
+  Record record = nothing_happened(task, scene, judge(name_of(Method::drill), no_times(), drill_rule));
   if (act == DrillAct::wrong_job) record.key = sha256_hex(task.key);
   if (act == DrillAct::nan) record.phase_field.psi[0][0] = std::numeric_limits<float>::quiet_NaN();
   Result<std::string> digest = write_record(std::move(record), task.output, keeping);
