@@ -76,6 +76,14 @@ std::optional<WorkerRow> worker_row(Database& ledger, std::int64_t id) {
   return worker_of(rows);
 }
 
+bool had_later_life(Database& ledger, const std::string& peer, const std::string& instance) {
+  Rows rows = ledger.query(
+      "SELECT EXISTS(SELECT 1 FROM workers AS it JOIN workers AS later ON later.peer = it.peer AND later.id > it.id"
+      " WHERE it.peer = ?1 AND it.instance = ?2)",
+      peer, instance);
+  return rows.next() && rows.integer(0) != 0;
+}
+
 std::vector<AlarmRow> alarm_rows(Database& ledger, int limit) {
   std::vector<AlarmRow> list;
   Rows rows = ledger.query("SELECT kind, job, message, raised_at FROM alarms ORDER BY id DESC LIMIT ?1", limit);

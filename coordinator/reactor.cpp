@@ -63,15 +63,19 @@ wire::Reply Reactor::answer(const std::string& peer, const wire::RequestEnvelope
   if (!same && !hello)
     return refuse(fmt::format("say HELLO first: {} is not known to this start of the coordinator (epoch {})", peer, epoch_));
   if (same) {
+    const wire::Reply* earlier = known->second.replied(envelope.request_id);
+    if (!earlier && known->second.late(envelope.request_id))
+      return refuse("a later request of this worker was answered before this one came");
     known->second.seen_s = now.monotonic_s;
-    if (const wire::Reply* earlier = known->second.replied(envelope.request_id)) return *earlier;
+    if (earlier) return *earlier;
   }
   const auto reply = [&]() -> wire::Reply {
     if (hello) return on_hello(peer, *hello, now);
     if (const auto* next = std::get_if<wire::Next>(&envelope.request)) return on_next(peer, known->second, *next, now);
     return on_beat(peer, known->second, std::get<wire::Beat>(envelope.request), now);
   }();
-  if (const auto session = roster_.find(peer); session != roster_.end()) session->second.remember(envelope.request_id, reply);
+  const auto session = roster_.find(peer);
+  if (session != roster_.end() && !std::holds_alternative<wire::Refusal>(reply)) session->second.remember(envelope.request_id, reply);
   return reply;
 }
 
@@ -137,6 +141,8 @@ wire::Reply Reactor::on_hello(const std::string& peer, const wire::Hello& hello,
   if (!is_name(hello.node) || !is_name(hello.instance) || hello.slots < 1)
     return refuse(fmt::format("HELLO needs a node and an instance of 1 to {} bytes, and at least one slot", longest_name));
   if (std::optional<wire::Reply> refusal = wrong_build(hello.build_id)) return *refusal;
+  if (had_later_life(ledger_.reading(), peer, hello.instance))
+    return refuse(fmt::format("{} has started again since: this HELLO is of an earlier life", peer));
   const std::int64_t worker = ledger_.register_worker(peer, hello, now.wall_s);
   wire::Welcome welcome{epoch_, settings_.beat_interval_s, settings_.lease_timeout_s, {}};
   for (const wire::HeldLease& held : hello.held) welcome.rulings.push_back(rule_on(peer, held, worker, now));

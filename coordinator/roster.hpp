@@ -20,9 +20,10 @@ struct Instant {
   double wall_s = 0.0;
 };
 
-inline constexpr int most_fast_faults = 5;      // in a row; then a worker gets nothing until it is started again
-inline constexpr double fast_fault_s = 10.0;    // a fault within this of its lease is a fast one
-inline constexpr std::size_t kept_replies = 4;  // for requests that come twice
+inline constexpr int most_fast_faults = 5;                            // in a row; then a worker gets nothing until it is started again
+inline constexpr double fast_fault_s = 10.0;                          // a fault within this of its lease is a fast one
+inline constexpr std::size_t kept_replies = 4;                        // for requests that come twice
+inline constexpr std::uint64_t widest_step = std::uint64_t{1} << 32;  // between two requests of one life
 
 // One worker daemon, by the authenticated name of its key.
 struct Session {
@@ -37,16 +38,22 @@ struct Session {
   std::uint64_t memory_bytes = 0;
   bool draining = false;
   double idle_since_s = -1.0;  // asked and got nothing since then; < 0: it has work
+  std::uint64_t newest_request = 0;
   std::deque<std::pair<std::uint64_t, wire::Reply>> replies;
 
   std::uint64_t slot_memory() const { return memory_bytes / static_cast<std::uint64_t>(std::max(1, slots)); }
   bool stopped() const { return fast_faults >= most_fast_faults; }
+  // A worker waits for one answer at a time and its request ids ascend, from a random start in each life: what does not come after the
+  // newest, or is far from it, is a copy that was long under way. To answer it would give leases to nobody.
+  bool late(std::uint64_t request_id) const { return request_id <= newest_request || request_id - newest_request > widest_step; }
+
   const wire::Reply* replied(std::uint64_t request_id) const {
     for (const auto& [id, reply] : replies)
       if (id == request_id) return &reply;
     return nullptr;
   }
   void remember(std::uint64_t request_id, const wire::Reply& reply) {
+    newest_request = request_id;
     replies.emplace_back(request_id, reply);
     if (replies.size() > kept_replies) replies.pop_front();
   }
