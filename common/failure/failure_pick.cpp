@@ -45,7 +45,7 @@ void FailurePick::look() {
   const FiveSteps steps = five_steps(time_, total_stress_, kinetic_energy_);
   if (!is_firm(steps, kinetic_energy_)) return look_again_later();
   const double since = time_[quiet_since(*steps.pick, steps.key->drop.rate)];
-  next_look_time_ = since + settling_wait * time_[*steps.pick];
+  next_look_time_ = since + settling_.wait * time_[*steps.pick];
   if (time_.back() >= next_look_time_) settled_ = time_.back();
 }
 
@@ -57,7 +57,7 @@ std::size_t FailurePick::quiet_since(std::size_t pick, double rate) const {
   for (double stress : total_stress_) largest = std::max(largest, std::abs(stress));
   for (std::size_t row = time_.size() - 1; row > pick; --row) {
     const double fall = (kinetic_energy_[row - 1] - kinetic_energy_[row]) / (time_[row] - time_[row - 1]);
-    if (fall > settling_quiet * rate || std::abs(total_stress_[row]) > settling_quiet * largest) return row;
+    if (fall > settling_.quiet * rate || std::abs(total_stress_[row]) > settling_.quiet * largest) return row;
   }
   return pick;
 }

@@ -21,6 +21,11 @@ namespace fracfarm {
 inline constexpr double settling_wait = 0.25;  // of the pick's time
 inline constexpr double settling_quiet = 0.5;
 
+// Every run has these; a study tries others.
+struct Settling {
+  double wait = settling_wait, quiet = settling_quiet;
+};
+
 struct SeriesRow {
   double time = 0.0;            // s, rising
   double mean_stress = 0.0;     // Pa, for drop10
@@ -35,6 +40,7 @@ bool firm_pick(std::span<const double> time, std::span<const double> total_stres
 // the rows.
 class FailurePick {
  public:
+  explicit FailurePick(Settling settling = {}) : settling_(settling) {}
   void add(const SeriesRow& row);
 
   std::optional<double> drop10() const { return drop10_; }       // s
@@ -47,6 +53,7 @@ class FailurePick {
   void look_again_later();
   std::size_t quiet_since(std::size_t pick, double rate) const;
 
+  Settling settling_;
   std::vector<double> time_, total_stress_, kinetic_energy_;
   double highest_stress_ = 0.0;
   std::optional<double> drop10_, settled_;

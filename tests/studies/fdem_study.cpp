@@ -41,17 +41,64 @@ FdemRun run_fdem(const Scene& scene, const RunControl& control) {
   return run;
 }
 
-Broken broken_by(const FdemRun& run, double time) {
-  Broken broken;
+namespace {
+
+// see(dx, dz) of every edge that broke by then.
+template <class See>
+void each_broken(const FdemRun& run, double time, See see) {
   const TriangleMesh& mesh = run.layout.mesh;
   for (std::size_t edge = 0; edge < mesh.edge_nodes.size(); ++edge) {
     if (!(run.layout.break_time[edge] <= time)) continue;
     const auto &a = mesh.nodes[static_cast<std::size_t>(mesh.edge_nodes[edge][0])],
                &b = mesh.nodes[static_cast<std::size_t>(mesh.edge_nodes[edge][1])];
-    ++broken.edges;
-    broken.length += std::hypot(b[0] - a[0], b[1] - a[1]);
+    see(b[0] - a[0], b[1] - a[1]);
   }
+}
+
+// m, of one plate.
+double pulled_by(const SideLoad& load, double time) {
+  const double v = load.normal_velocity.value_or(0.0);
+  return time < load.ramp ? 0.5 * v * time * time / load.ramp : v * (time - 0.5 * load.ramp);
+}
+
+}  // namespace
+
+Broken broken_by(const FdemRun& run, double time) {
+  Broken broken;
+  each_broken(run, time, [&](double dx, double dz) { ++broken.edges, broken.length += std::hypot(dx, dz); });
   return broken;
+}
+
+std::vector<float> broken_field(const FdemRun& run, double time) {
+  const TriangleMesh& mesh = run.layout.mesh;
+  std::vector<float> field(mesh.edge_nodes.size(), 0.0F);
+  for (std::size_t edge = 0; edge < field.size(); ++edge)
+    field[edge] = mesh.edge_kind[edge] == EdgeKind::crack ? 2.0F : run.layout.break_time[edge] <= time ? 1.0F : 0.0F;
+  return field;
+}
+
+std::array<double, direction_bins> directions_by(const FdemRun& run, double time) {
+  std::array<double, direction_bins> shares{};
+  each_broken(run, time, [&](double dx, double dz) {
+    const double turns = std::atan2(dz, dx) / M_PI * static_cast<double>(direction_bins);
+    const long bin = std::lround(turns + 2.0 * static_cast<double>(direction_bins)) % static_cast<long>(direction_bins);
+    shares[static_cast<std::size_t>(bin)] += std::hypot(dx, dz);
+  });
+  const double all = broken_by(run, time).length;
+  for (double& share : shares) share = all > 0.0 ? share / all : 0.0;
+  return shares;
+}
+
+double stiffness_of(const FdemRun& run, const Scene& scene) {
+  double count = 0.0, e = 0.0, s = 0.0, ee = 0.0, es = 0.0;
+  for (std::size_t row = 0; row < run.series.rows(); ++row) {
+    const double time = run.series["step_time"][row], stress = run.series["stress_zz"][row];
+    if (stress > 0.5 * run.peak) break;
+    if (stress < 0.2 * run.peak) continue;
+    const double strain = (pulled_by(scene.on(Side::top).front(), time) + pulled_by(scene.on(Side::bottom).front(), time)) / scene.height;
+    count += 1.0, e += strain, s += stress, ee += strain * strain, es += strain * stress;
+  }
+  return (count * es - e * s) / (count * ee - e * e);
 }
 
 double share_apart(double a, double b) { return a == b ? 0.0 : std::abs(a - b) / std::abs(b); }

@@ -1,6 +1,7 @@
 // What the FDEM studies share: the dataset's scenes by tier, runs by the solver's door, and what broke of a mesh by when.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,16 @@ struct Broken {
   double length = 0.0;  // m
 };
 Broken broken_by(const FdemRun& run, double time);
+
+// The damage on edges of the same instant: 2 on initial cracks, 1 on broken edges, else 0.
+std::vector<float> broken_field(const FdemRun& run, double time);
+
+// Shares of the broken length by the direction of the edges: bin k holds 180 / direction_bins degrees around k times that, 0 is along x.
+inline constexpr std::size_t direction_bins = 6;
+std::array<double, direction_bins> directions_by(const FdemRun& run, double time);
+
+// Pa: rise of the mean vertical stress with the mean strain that the plates bring, between 20 and 50 % of the peak.
+double stiffness_of(const FdemRun& run, const Scene& scene);
 
 // |a - b| / b; 0 where both are 0.
 double share_apart(double a, double b);

@@ -37,11 +37,13 @@ void add_fdem_choice(CLI::App& command, FdemChoice& choice) {
 
 // A study of FDEM: its command, and what answers it.
 template <class Question>
-void add_fdem_study(CLI::App& app, std::string name, std::string words, Question& question, int (*answer)(const Question&), int& status) {
+CLI::App* add_fdem_study(CLI::App& app, std::string name, std::string words, Question& question, int (*answer)(const Question&),
+                         int& status) {
   CLI::App* command = app.add_subcommand(std::move(name), std::move(words));
   add_fdem_choice(*command, question.choice);
   command->add_flag("--json", question.json, "Print one object");
   command->final_callback([&question, answer, &status] { status = answer(question); });
+  return command;
 }
 
 }  // namespace
@@ -67,6 +69,30 @@ int main(int argc, char** argv) {
   FdemTiersQuestion tiers;
   add_fdem_study(app, "fdem-tiers", "The cheaper tiers of FDEM against the reference tier; 1 where a pattern misses", tiers, fdem_tiers,
                  status);
+  FdemRulesQuestion fdem_rule;
+  add_fdem_study(app, "fdem-rules", "What each rule of FDEM costs and saves", fdem_rule, fdem_rules, status);
+  FdemPickQuestion pick;
+  add_fdem_study(app, "fdem-pick", "What the five-step pick costs, and whether it settles on what the horizon gives", pick, fdem_pick,
+                 status);
+  FdemMeshQuestion mesh;
+  mesh.choice.patterns = 3;
+  add_fdem_study(app, "fdem-mesh", "Mesh size and mesh seeds; 1 where the body's answer moves by more than 10 %", mesh, fdem_mesh, status)
+      ->add_option("--meshes", mesh.meshes, "Seeds of each size")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  FdemStabilityQuestion stability;
+  stability.choice.patterns = 1;
+  add_fdem_study(app, "fdem-stability", "The edge of FDEM's step, predicted and observed, and runs past it", stability, fdem_stability,
+                 status)
+      ->add_option("--picture", stability.picture, "A PNG file of the map");
+  FdemMethodsQuestion methods;
+  methods.choice.materials = {"shale", "tungsten", "pbx5"};
+  CLI::App* methods_command =
+      add_fdem_study(app, "fdem-methods", "Where FDEM and the phase field part ways on the same patterns", methods, fdem_methods, status);
+  methods_command->add_option("--picture", methods.picture, "A PNG file of one pattern");
+  methods_command->add_option("--picture-pattern", methods.picture_pattern, "Which")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -36,4 +36,49 @@ struct FdemTiersQuestion {
 // 0 where every pattern's fast run is within all three limits.
 int fdem_tiers(const FdemTiersQuestion& question);
 
+// What each rule of FDEM costs in accuracy and saves in time.
+struct FdemRulesQuestion {
+  FdemChoice choice;
+  bool json = false;
+};
+int fdem_rules(const FdemRulesQuestion& question);
+
+// What running on until the five-step pick exists costs, and whether it is the pick of a run to the horizon.
+struct FdemPickQuestion {
+  FdemChoice choice;
+  bool json = false;
+};
+int fdem_pick(const FdemPickQuestion& question);
+
+// Twice, once and half the element size on several meshes each.
+struct FdemMeshQuestion {
+  FdemChoice choice;
+  std::array<double, 3> sizes{0.006, 0.003, 0.0015};  // m; the second is what the others are compared with
+  int meshes = 3;                                     // seeds of each
+  double bulk_limit = 0.10;                           // of stiffness and peak
+  bool json = false;
+};
+// 0 where stiffness and peak of every pattern are within the limit.
+int fdem_mesh(const FdemMeshQuestion& question);
+
+// The edge of the step that is predicted against the one that is observed, and what runs past it do.
+struct FdemStabilityQuestion {
+  FdemChoice choice;
+  std::vector<double> past{1.02, 1.1, 1.3};  // dt of runs past the edge, of the edge
+  double past_horizon = 6e-5;                // s, of those runs
+  std::string picture;                       // a PNG file; empty: none
+  bool json = false;
+};
+// 0 where every observed edge is within 5 % of the predicted one.
+int fdem_stability(const FdemStabilityQuestion& question);
+
+// Where FDEM and the phase field part ways on the same patterns.
+struct FdemMethodsQuestion {
+  FdemChoice choice;
+  std::string picture;  // a PNG file of one pattern in every material; empty: none
+  int picture_pattern = 1;
+  bool json = false;
+};
+int fdem_methods(const FdemMethodsQuestion& question);
+
 }  // namespace fracfarm::studies
