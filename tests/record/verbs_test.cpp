@@ -150,3 +150,23 @@ TEST_CASE("the record of a real run breaks no rule and is drawn, for brittle and
     CHECK(std::filesystem::file_size(picture) > 10000);
   }
 }
+
+TEST_CASE("the record of a real FDEM run breaks no rule and is drawn, for brittle and ductile material") {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.path() / "scene.json", record = folder.path() / "real.h5", picture = folder.path() / "real.png";
+  for (const char* material : {"shale", "tungsten"}) {
+    std::ofstream(scene)
+        << R"({"schema": "fracfarm.scene/1", "method": "fdem", "material": ")" << material
+        << R"(", "cracks": [[0.02, 0.12, 0.11, 0.12], [0.15, 0.11, 0.23, 0.11]], "domain": {"width": 0.25, "height": 0.25}, "fdem": {"element_size": 0.01},
+      "loads": {"top": {"normal_velocity": 1.0, "tangential": "fixed", "ramp": 1e-4}, "bottom": {"normal_velocity": 1.0, "tangential": "fixed", "ramp": 1e-4},
+                "left": "free", "right": "free"}, "time": {"frame_interval": 2e-5}})";
+    REQUIRE(fracfarm_run("solve " + scene + " -o " + record).status == 0);
+    const Ended checked = fracfarm_run("check " + record);
+    INFO(checked.out);
+    CHECK(checked.status == 0);
+    const auto shown = nlohmann::json::parse(fracfarm_run("show --json " + record + " -o " + picture).out);
+    CHECK(shown["verdict"] == "failed");
+    CHECK(shown["mesh"]["broken"] > 5);
+    CHECK(std::filesystem::file_size(picture) > 10000);
+  }
+}
