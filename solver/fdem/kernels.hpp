@@ -65,6 +65,7 @@ struct View {
   Curve curve;
   bool always_follow;  // the damage arithmetic in every block
   bool always_flow;    // the radial return in every block
+  Real least_kinetic;  // m^2/s^2, of a triangle's v- v+
 };
 
 struct Blocks {
@@ -87,7 +88,7 @@ struct TriangleSums {
   double stress_xx, stress_zz;  // N: over the area
   double elastic, plastic;      // J/m; plastic is what this configuration would still add
   double viscous;               // W/m
-  double kinetic;               // J/m: 1/2 m v- v+ of the velocities half a step before and after
+  double kinetic;               // J/m: 1/2 m v- v+ of the velocities half a step before and after, by triangle no less than `least_kinetic`
   double fastest;               // m^2/s^2, largest square of a velocity
 };
 

@@ -36,7 +36,7 @@ using CornerRows = std::vector<double>;
 
 struct ContactEnergies {
   double stored = 0.0;    // J/m, in overlaps and friction springs now
-  double friction = 0.0;  // J/m, dissipated since the start, never falls
+  double friction = 0.0;  // J/m, dissipated since the start
   double jumped = 0.0;    // J/m, stored since the start without motion: overlaps of edges as they broke, less what left its reach
 };
 

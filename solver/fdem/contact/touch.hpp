@@ -50,15 +50,12 @@ inline RelativeMotion relative_motion(const TouchPlace& at, double place, const 
   return {tx * x + tz * z + turn * at.depth, tx * z - tz * x};
 }
 
-// Return mapping of the spring under |slip| <= mu overlap: first the limit of now, then the motion of the step. Gives the energy lost, J/m
-// >= 0.
+// Return mapping of the spring under |slip| <= mu overlap: first the limit of now, then the motion of the step. Gives the energy lost, J/m:
+// the step's work by the mean of both forces, which is what a leapfrog does, less what the spring holds more.
 inline double slide(Touch& touch, double friction, double moved) {
-  const double limit = friction * touch.overlap;
-  const double kept = std::clamp(touch.slip, -limit, limit);
-  const double tried = kept + moved, now = std::clamp(tried, -limit, limit);
-  const double unloaded = 0.5 * (touch.slip * touch.slip - kept * kept), slid = 0.5 * (kept + now) * (tried - now);
-  touch.slip = now;
-  return touch.stiffness * (unloaded + slid);
+  const double limit = friction * touch.overlap, last = touch.slip;
+  touch.slip = std::clamp(std::clamp(last, -limit, limit) + moved, -limit, limit);
+  return 0.5 * touch.stiffness * (last + touch.slip) * (moved - (touch.slip - last));
 }
 
 // Forces on the ends of target and side, N/m.

@@ -217,14 +217,14 @@ INLINE void measure_part(const View& view, const TriangleLaw<Real>& law, int b, 
   const Corners kick = kick_of(law, B, inside.P, outer_forces(view, at, needs), dt);
   Corners faster = v + kick;
   if (needs & needs_told) obey(view, b, s, B, kick, dt, faster);
-  const Lanes half_mass = B.area * Lanes(Real(0.5) / law.per_mass);
+  const Lanes half_mass = B.area * Lanes(Real(0.5) / law.per_mass), least(view.least_kinetic);
   const Lanes square = product(v, v);
   add(sums.xx.part[s], B.area * inside.P.xx);
   add(sums.zz.part[s], B.area * inside.P.zz);
   add(sums.elastic.part[s], B.area * inside.response.stored);
   add(sums.plastic.part[s], B.area * inside.response.plastic_work);
   add(sums.viscous.part[s], B.area * inside.viscous);
-  add(sums.kinetic.part[s], half_mass * product(v, faster));
+  add(sums.kinetic.part[s], half_mass * larger(product(v, faster), least));
   sums.fastest.part[s] = select(sums.fastest.part[s] > square, sums.fastest.part[s], square);
 }
 
