@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/verification/fdem/cases.hpp"
+#include "tests/verification/fdem/contact_cases.hpp"
 #include "tests/verification/fdem/set_ups.hpp"
 #include "tests/verification/set_ups.hpp"
 
@@ -69,6 +70,9 @@ constexpr std::array table{
     Case{"PF-41", slow, "paper test 2: inclined edge crack", "seed paper, figure 11 (d)", inclined_crack_set_up, inclined_crack},
     Case{"PF-42", slow, "paper test 3: two flaws in compression", "seed paper, figure 11 (f)", two_flaws_set_up, two_flaws},
     Case{"FD-1", fast, "one joint", "Munjiza, Andrews and White (1999); Mahabadi et al. (2012), closed form", one_joint_set_up, one_joint},
+    Case{"FD-8", fast, "sliding block", "Coulomb", sliding_block_set_up, sliding_block},
+    Case{"FD-9", slow, "Hertz", "Hertz (1882), line contact", hertz_set_up, hertz},
+    Case{"FD-10", slow, "restitution", "conservation of energy", restitution_set_up, restitution},
 };
 
 }  // namespace
