@@ -85,7 +85,7 @@ struct SessionOptions {
   int slots = 1;
   std::uint64_t memory_bytes = 0;
   bool once = false;                                  // end where the coordinator says that nothing is left
-  double short_job_s = 1.0;                           // jobs below it are asked for ahead, so that no slot waits for the network
+  double short_job_s = 5.0;                           // jobs below it are asked for ahead, so that no slot waits for the network
   double report_delay_s = 0.5;                        // gather completions so long where no slot waits
   double farewell_s = 3.0;                            // for the last words after TERM where nobody answers
   double end_margin_s = 30.0;                         // before the end of the allocation
