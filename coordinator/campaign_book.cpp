@@ -51,6 +51,17 @@ Result<std::shared_ptr<const Campaign>> CampaignBook::open(Database& ledger, std
   return (known_[id] = {std::make_shared<const Campaign>(std::move(*campaign)), row->build_id}).campaign;
 }
 
+std::string CampaignBook::scene_text(std::int64_t id, std::uint64_t position) {
+  Entry& entry = known_.at(id);
+  const JobSpec spec = job_at(*entry.campaign, position);
+  std::string series = fmt::format("{} {} {}", spec.block, spec.material, spec.load);
+  for (const auto& [key, value] : spec.settings) series += fmt::format(" {}", value);
+  auto known = entry.templates.find(series);
+  if (known == entry.templates.end()) known = entry.templates.emplace(std::move(series), SceneTemplate::make(*entry.campaign, spec)).first;
+  if (known->second) return known->second->text(spec.set, spec.sample_id);
+  return canonical_text(scene_of(*entry.campaign, spec));
+}
+
 std::string scene_text(const Campaign& campaign, std::uint64_t position) {
   return canonical_text(scene_of(campaign, job_at(campaign, position)));
 }
@@ -61,7 +72,7 @@ Result<Untouched> untouched_job(Database& ledger, CampaignBook& book, const Lane
   const auto position = static_cast<std::uint64_t>(job - lane.first_id);
   const JobSpec spec = job_at(**campaign, position);
   Untouched made;
-  made.scene = canonical_text(scene_of(**campaign, spec));
+  made.scene = book.scene_text(lane.campaign, position);
   made.job = {job_key(made.scene, book.build_id(lane.campaign)),
               lane.campaign,
               position,

@@ -10,6 +10,7 @@
 #include "coordinator/campaign.hpp"
 #include "coordinator/ledger.hpp"
 #include "coordinator/queries.hpp"
+#include "coordinator/scene_template.hpp"
 
 namespace fracfarm {
 
@@ -19,15 +20,20 @@ class CampaignBook {
   Result<std::shared_ptr<const Campaign>> open(Database& ledger, std::int64_t id);
   const std::string& build_id(std::int64_t id) const { return known_.at(id).build_id; }  // of one that was opened
 
+  // The canonical text of the scene of a job of a campaign that was opened.
+  std::string scene_text(std::int64_t id, std::uint64_t position);
+
  private:
   struct Entry {
     std::shared_ptr<const Campaign> campaign;
     std::string build_id;
+    // By block, material, load and settings; empty where the series has none.
+    std::map<std::string, std::optional<SceneTemplate>> templates = {};
   };
   std::map<std::int64_t, Entry> known_;
 };
 
-// The text of the scene of a job, canonical.
+// The same by the scene grammar alone.
 std::string scene_text(const Campaign& campaign, std::uint64_t position);
 
 struct Untouched {

@@ -184,7 +184,7 @@ wire::Assignment Reactor::assign(const Job& job, const Session& session, Instant
   ledger_.lease(job.id, lease, session.worker, now.wall_s);
   held_[{lease.epoch, lease.counter}] = {job.id, now.monotonic_s + settings_.lease_timeout_s, now.monotonic_s, 0, 0, session.worker};
   const std::shared_ptr<const Campaign> campaign = book_.open(ledger_.reading(), job.campaign).value();  // candidate_of opened it
-  return assignment_of(job.key, job.id, *campaign, lease, scene_text(*campaign, job.position), job.attempts + 1, job.step_scale);
+  return assignment_of(job.key, job.id, *campaign, lease, book_.scene_text(job.campaign, job.position), job.attempts + 1, job.step_scale);
 }
 
 std::optional<wire::Assignment> Reactor::assign_untouched(const Lane& lane, std::int64_t id, const Session& session, Instant now) {

@@ -80,7 +80,7 @@ std::optional<wire::Assignment> Reactor::assign_recheck(const RecheckRow& rechec
   ledger_.lease_recheck(recheck.id, lease, session.worker);
   held_[{lease.epoch, lease.counter}] = {job.id,        now.monotonic_s + settings_.lease_timeout_s, now.monotonic_s, 0, recheck.id,
                                          session.worker};
-  return assignment_of(job.key, job.id, **campaign, lease, scene_text(**campaign, job.position), job.attempts + 1, job.step_scale);
+  return assignment_of(job.key, job.id, **campaign, lease, book_.scene_text(job.campaign, job.position), job.attempts + 1, job.step_scale);
 }
 
 // By the job's key alone, so that which jobs are computed again depends on no moment.

@@ -230,9 +230,9 @@ class Farm {
   std::uint64_t done_ = 0, cut_ = 0;
 };
 
-using Rows = std::vector<std::vector<std::string>>;
+using Table = std::vector<std::vector<std::string>>;
 
-void short_jobs(Options options, Rows& rows) {
+void short_jobs(Options options, Table& rows) {
   Farm farm(options);
   farm.run();
   rows.push_back({fmt::format("{} slots, jobs of {:.3g} s", options.workers * options.slots, options.mean_s),
@@ -240,7 +240,7 @@ void short_jobs(Options options, Rows& rows) {
                   ">= 99.5 %"});
 }
 
-void limits(Options options, Rows& rows) {
+void limits(Options options, Table& rows) {
   options.workers = 16;
   options.mean_s = 30.0;
   options.spread = 0.5;
@@ -269,7 +269,7 @@ int main(int argc, char** argv) {
   app.add_option("--mean", options.mean_s, "seconds of a job")->capture_default_str();
   app.add_flag("--short-jobs", only_short, "only the first question");
   CLI11_PARSE(app, argc, argv);
-  Rows rows{{"what", "measured", "wanted"}};
+  Table rows{{"what", "measured", "wanted"}};
   short_jobs(options, rows);
   if (!only_short) limits(options, rows);
   fmt::print("{}", table_text(rows));
