@@ -39,7 +39,7 @@ inline Ends difference(const SideNow& now, const SideNow& then) {
 // side does: it moves at the point as at the point's foot on the side, and by the side's turn times the depth.
 struct RelativeMotion {
   double along, into;
-  double length() const { return std::hypot(along, into); }
+  double length() const { return std::sqrt(along * along + into * into); }
 };
 
 inline RelativeMotion relative_motion(const TouchPlace& at, double place, const Ends& target, const Ends& side) {
