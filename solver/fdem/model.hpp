@@ -4,13 +4,11 @@
 #include <array>
 #include <vector>
 
+#include "solver/fdem/field.hpp"
 #include "solver/fdem/plan.hpp"
-#include "solver/phasefield/grid.hpp"
 #include "solver/stage_clock.hpp"
 
 namespace fracfarm::fdem {
-
-using phasefield::Field;
 
 // One told degree of freedom.
 struct ToldDof {

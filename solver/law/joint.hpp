@@ -40,10 +40,12 @@ FRACFARM_POINTWISE JointAnswer<Real> answer(const Joint<Real>& law, const Openin
   const Real onset_n = open * law.per_onset_n, onset_t = opening.t * law.per_onset_t;
   const Real rupture_n = open * law.per_rupture_n, rupture_t = opening.t * law.per_rupture_t;
   const Real lambda = sqrt(onset_n * onset_n + onset_t * onset_t), d = sqrt(rupture_n * rupture_n + rupture_t * rupture_t);
-  const Real r = select(lambda > zero, d / select(lambda > zero, lambda, one), one);
-  const Real reached = smaller((d - r) / select(one > r, one - r, one), one);
+  // (d - r) / (1 - r) = d (lambda - 1) / (lambda - d) and r / (r + D (1 - r)) = d / (d + D (lambda - d)): one division each.
+  const Real gap = lambda - d;
+  const Real reached = smaller(d * (lambda - one) / select(gap > zero, gap, one), one);
   const Real damage = select(lambda > one, larger(D, reached), D);
-  const Real share = select(damage > zero, Curve::kept(damage) * r / (r + damage * (one - r)), one);
+  const Real rest = d + damage * gap;
+  const Real share = select(damage > zero, Curve::kept(damage) * d / select(rest > zero, rest, one), one);
   const Real soft = law.penalty * share;
   return {damage, select(opening.n > zero, soft, law.penalty) * opening.n, soft * opening.t};
 }

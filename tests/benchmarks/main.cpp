@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   register_steps();
   register_kernels();
+  register_fdem_steps();
   RatioReporter ratios;
   if (console)
     benchmark::RunSpecifiedBenchmarks(&ratios);

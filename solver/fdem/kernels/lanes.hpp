@@ -13,10 +13,9 @@
 
 #include "solver/fdem/kernels.hpp"
 
-#define INLINE __attribute__((always_inline)) inline
-
 namespace fracfarm::fdem::FRACFARM_KERNELS {
 
+#define INLINE __attribute__((always_inline)) inline
 using Real = FRACFARM_REAL;
 using View = fdem::View<Real>;
 using Index = std::ptrdiff_t;
@@ -179,6 +178,11 @@ INLINE Raw load_quads(const At& at, int first) {
     return Raw(
         _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(as<double>(at(first)))), _mm256_loadu_pd(as<double>(at(first + 4))), 1));
   }
+#elif defined __AVX2__
+  if constexpr (width == 8)
+    return Raw(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(as<float>(at(first)))), _mm_loadu_ps(as<float>(at(first + 4))), 1));
+  else
+    return Raw(_mm256_loadu_pd(as<double>(at(first))));
 #else
   Raw raw;
   for (int group = 0; group < width / 4; ++group)
@@ -198,6 +202,13 @@ INLINE void store_quads(const At& at, int first, Raw a) {
   } else {
     _mm256_storeu_pd(as<double>(at(first)), _mm512_castpd512_pd256(__m512d(a)));
     _mm256_storeu_pd(as<double>(at(first + 4)), _mm512_extractf64x4_pd(__m512d(a), 1));
+  }
+#elif defined __AVX2__
+  if constexpr (width == 8) {
+    _mm_storeu_ps(as<float>(at(first)), _mm256_castps256_ps128(__m256(a)));
+    _mm_storeu_ps(as<float>(at(first + 4)), _mm256_extractf128_ps(__m256(a), 1));
+  } else {
+    _mm256_storeu_pd(as<double>(at(first)), __m256d(a));
   }
 #else
   for (int group = 0; group < width / 4; ++group)
