@@ -41,3 +41,42 @@ TEST_CASE("A job that failed on a node goes to another where there is one, else 
   it.failed_on = {"n1", "n2"};
   CHECK(claim(std::vector<Candidate>{it}, {"n1", 1, -1.0}, {}, {"n1", "n2"}).size() == 1);
 }
+
+TEST_CASE("Run times are learned by the type of the node; where it has too few results, all nodes count with a wider margin") {
+  LearnedTimes learned;
+  learned.all[quick] = {enough_history, 0.5, 10.0, 0.0};
+  CHECK(longest_try(quick, 3600.0, learned, "old").seconds == Approx(other_type_margin * 10.0 + flush_s));
+  learned.by_node[{quick, "old"}] = {enough_history - 1, 5.0, 40.0, 0.0};
+  CHECK(longest_try(quick, 3600.0, learned, "old").seconds == Approx(other_type_margin * 10.0 + flush_s));
+  learned.by_node[{quick, "old"}].n = enough_history;
+  CHECK(longest_try(quick, 3600.0, learned, "old").seconds == Approx(history_margin * 40.0 + flush_s));
+  CHECK_FALSE(longest_try(slow, 3600.0, learned, "old").learned);
+  CHECK(longest_try(slow, 3600.0, learned, "old").seconds == 3600.0 + flush_s);
+}
+
+TEST_CASE("Jobs behind those that fill the slots must fit behind them") {
+  const LearnedTimes learned{history(enough_history), {}};
+  Claim taking({.node = "n1", .free_slots = 100, .remaining_s = 40.0, .slots = 2}, learned);
+  int taken = 0;
+  while (taking.left() > 0 && taking.fits(quick, 3600.0)) taking.take(quick, 3600.0), ++taken;
+  // Each takes 2 x 1 s + 10 s at most: two at once, then each two 12 s later.
+  CHECK(taken == 6);
+}
+
+TEST_CASE("What is left of an allocation is filled with what still fits") {
+  std::vector<Candidate> jobs;
+  for (int n = 0; n < 5; ++n) jobs.push_back(job(n, n % 2 ? quick : slow));
+  CHECK(claim(jobs, {"n1", 5, 100.0}, history(enough_history), {}) == std::vector<std::size_t>{1, 3});
+}
+
+TEST_CASE("A job that wants more memory is left to a larger node where there is one") {
+  Candidate it = job(1);
+  it.memory_floor = 100;
+  const auto may_have = [&](std::uint64_t own, std::uint64_t most) {
+    return !claim(std::vector<Candidate>{it}, {.node = "n1", .free_slots = 1, .slot_memory = own, .most_memory = most}, {}, {}).empty();
+  };
+  CHECK(may_have(101, 101));
+  CHECK_FALSE(may_have(100, 101));
+  CHECK(may_have(100, 100));
+  CHECK(may_have(50, 80));
+}

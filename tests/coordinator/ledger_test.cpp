@@ -175,3 +175,44 @@ TEST_CASE("Learned times are means and an upper edge of the 99th percentile") {
   CHECK(learned.p99_s >= 9.0);
   CHECK(learned.p99_s <= 9.0 * 1.19);  // a quarter octave
 }
+
+TEST_CASE("A ledger of the first schema keeps its jobs, results, history and counters") {
+  Database database = Database::open({});
+  REQUIRE(migrate(database, migrations().first(1)));
+  database.script(
+      "INSERT INTO campaigns VALUES(1, 'old', '{}', 'b', 3, 3, 0, 0.0);"
+      "INSERT INTO workers VALUES(1, 'worker-a', 'i1', 'n1', 4, 1000, 'b', 0.0, NULL, 0, 1, 1);"
+      "INSERT INTO shards VALUES(1, 's.tar');"
+      "INSERT INTO jobs(id, key, campaign, position, method, material, load, crack_set, sample_id, state) VALUES"
+      "(1, randomblob(32), 1, 0, 'phase_field', 'pbx', 'uniaxial', 'orthogonal', 1, 'READY'),"
+      "(2, randomblob(32), 1, 1, 'phase_field', 'steel', 'biaxial', 'oblique', 2, 'READY');"
+      "UPDATE jobs SET state = 'DONE', verdict = 'failed', time_to_failure = 4.5e-5, failure_rule = 'through_crack', peak_stress = 7e6, "
+      "steps = 180,"
+      " shard = 1, offset = 512, length = 9, sha256 = zeroblob(32), worker = 1 WHERE id = 2;"
+      "INSERT INTO attempts VALUES(1, 1, 1, 1, 'SOLVER_CRASH', 'signal 11', 'it crashed', 0.0, 1.0);"
+      "INSERT INTO alarms VALUES(1, 'NONDETERMINISM', 2, 'differs', 0.0);"
+      "INSERT INTO durations VALUES('phase_field', 'steel', 'biaxial', 3, 30, 60.0, 900);");
+  REQUIRE(migrate(database));
+  const Job job = job_by_id(database, 2).value();
+  CHECK(job.job_class == JobClass{"phase_field", "steel", "biaxial"});
+  CHECK(job.crack_set == "oblique");
+  CHECK(job.outcome->failure_rule == "through_crack");
+  CHECK(job.outcome->shard == "s.tar");
+  CHECK(attempts_of(database, 1).at(0).signature == "signal 11");
+  CHECK(alarm_rows(database, 5).at(0).job == 2);
+  CHECK(fault_counts(database) == std::map<std::string, std::uint64_t>{{"SOLVER_CRASH", 1}});
+  CHECK(learned_times(database).at(job.job_class).n == 30);
+  CHECK(count_rows(database).size() == 2);
+  CHECK(recount_rows(database).size() == 2);
+  database.run("UPDATE jobs SET state = 'CANCELLED' WHERE id = 1");
+  CHECK(count_rows(database).at(0).state == State::cancelled);
+}
+
+TEST_CASE("A ledger of the first schema whose campaign was half made is refused in words") {
+  Database database = Database::open({});
+  REQUIRE(migrate(database, migrations().first(1)));
+  database.script("INSERT INTO campaigns VALUES(1, 'half', '{}', 'b', 3, 2, 0, 0.0)");
+  const Result<void> refused = migrate(database);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().message.find("half") != std::string::npos);
+}

@@ -351,3 +351,51 @@ TEST_CASE("A rejected scene is a result without a record") {
         Receipt::accepted);
   CHECK(farm.job(it.job).outcome->verdict == Verdict::rejected);
 }
+
+TEST_CASE("An allocation that nothing fits any more is given back early, but not while it holds something") {
+  Farm farm(3);
+  farm.hello("worker-a", "n1");
+  const wire::Assignment it = farm.claim("worker-a", 1, 4000.0).assignments.at(0);
+  CHECK(farm.claim("worker-a", 1, 3000.0).order == wire::Order::wait);
+  for (int n = 0; n < 40; ++n) {
+    farm.pass(2.0);
+    farm.beat("worker-a", {held(it)});
+  }
+  CHECK(farm.claim("worker-a", 1, 2900.0).order == wire::Order::wait);
+  farm.complete("worker-a", result_of(it));
+  CHECK(farm.claim("worker-a", 1, 2890.0).order == wire::Order::drain);
+  farm.hello("worker-b", "n2");
+  CHECK(farm.claim("worker-b", 1, -1.0).assignments.size() == 1);  // one without an end is not concerned
+}
+
+TEST_CASE("Explain says that the whole budget counts until results of the class are known") {
+  Farm farm(3);
+  farm.tell("worker-a", wire::Hello{"n1", "i1", 1, 1u << 30, build, 600.0, {}});
+  const std::string why = farm.ask("explain", {{"job", "3"}})["why"];
+  CHECK(why.find("whole wall-clock budget") != std::string::npos);
+  CHECK(why.find("20 results") != std::string::npos);
+}
+
+TEST_CASE("What is held or of a paused class is not handed out, and holds up the others not") {
+  Farm farm(4);
+  farm.hello("worker-a", "n1");
+  farm.ask("hold", {{"jobs", {1, 3}}});
+  const wire::Jobs jobs = farm.claim("worker-a", 4);
+  REQUIRE(jobs.assignments.size() == 2);
+  CHECK(jobs.assignments[0].job == 2);
+  farm.ask("release", {{"state", "HELD"}});
+  CHECK(farm.claim("worker-a", 4).assignments.size() == 2);
+}
+
+TEST_CASE("Notices tell what somebody should know of: a quarantined job, and the end") {
+  Farm farm(1);
+  farm.hello("worker-a", "n1");
+  farm.fail_with("worker-a", farm.one("worker-a"), Fault::bad_request);
+  farm.tick(1.0);
+  const std::vector<Notice> notices = farm.reactor->take_notices();
+  REQUIRE(notices.size() == 2);
+  CHECK(notices[0].kind == "quarantined");
+  CHECK(notices[0].job == 1);
+  CHECK(notices[1].kind == "settled");
+  CHECK(farm.reactor->take_notices().empty());
+}

@@ -1,6 +1,7 @@
 #include "coordinator/requests.hpp"
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <set>
 
 #include "tests/coordinator/farm_fixture.hpp"
@@ -193,4 +194,46 @@ TEST_CASE("Records say where the bytes of every DONE job lie") {
   CHECK(list[0]["offset"] == 512);
   CHECK(list[0]["store"] == "store");
   CHECK(farm.ask("known", {{"campaign", campaign_text(5)}}) == json{{"schema", "fracfarm.known/2"}, {"present", 3}, {"done", 1}});
+}
+
+TEST_CASE("Each request's answer has the schema and version that scripts rely on") {
+  const std::map<std::string, std::string> schemas{
+      {"status", "fracfarm.status/1"},   {"jobs", "fracfarm.jobs/1"},         {"explain", "fracfarm.explain/1"},
+      {"worker", "fracfarm.worker/1"},   {"failures", "fracfarm.failures/1"}, {"cases", "fracfarm.cases/1"},
+      {"records", "fracfarm.records/1"}, {"learned", "fracfarm.learned/1"},   {"known", "fracfarm.known/2"},
+      {"submit", "fracfarm.submit/1"},   {"retry", "fracfarm.change/1"},      {"release", "fracfarm.change/1"},
+      {"hold", "fracfarm.change/1"},     {"priority", "fracfarm.change/1"},   {"cancel", "fracfarm.change/1"},
+      {"drain", "fracfarm.change/1"},    {"pause", "fracfarm.change/1"},      {"resume", "fracfarm.change/1"},
+      {"recheck", "fracfarm.change/1"}};
+  Farm farm(2);
+  farm.hello("worker-a", "n1");
+  for (const RequestRow& row : requests()) {
+    json arguments = json::object();
+    if (row.verb == "worker") arguments = {{"worker", "worker-a"}};
+    if (row.verb == "explain") arguments = {{"job", 1}};
+    if (row.verb == "known" || row.verb == "submit") arguments = {{"campaign", campaign_text(2)}};
+    for (const char* verb : {"retry", "release", "hold", "priority", "cancel", "recheck"})
+      if (row.verb == verb) arguments = {{"jobs", {1}}, {"dry_run", true}};
+    if (row.verb == "priority") arguments["priority"] = 3;
+    INFO(row.verb);
+    REQUIRE(schemas.contains(std::string(row.verb)));
+    CHECK(farm.ask(std::string(row.verb), arguments)["schema"] == schemas.at(std::string(row.verb)));
+  }
+}
+
+TEST_CASE("Failures are grouped by class, fault and signature, and the cases say which jobs failed") {
+  Farm farm(6);
+  farm.hello("worker-a", "n1");
+  farm.hello("worker-b", "n2");
+  farm.fail_with("worker-a", farm.one("worker-a"), Fault::solver_crash, "signal 11");
+  farm.fail_with("worker-b", farm.one("worker-b"), Fault::solver_crash, "signal 11");
+  farm.complete("worker-a", result_of(farm.one("worker-a")));
+  const json groups = farm.ask("failures", json::object())["groups"];
+  REQUIRE(groups.size() == 1);
+  CHECK(groups[0]["attempts"] == 2);
+  CHECK(groups[0]["jobs"] == 2);
+  CHECK(groups[0]["nodes"] == 2);
+  const json cases = farm.ask("cases", json::object());
+  CHECK(cases["failed"] == json{{1, 0}, {1, 1}});
+  CHECK(cases["sound"] == json{{1, 2}});
 }

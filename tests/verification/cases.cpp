@@ -7,6 +7,7 @@
 
 #include "tests/verification/fdem/cases.hpp"
 #include "tests/verification/fdem/contact_cases.hpp"
+#include "tests/verification/fdem/sample_cases.hpp"
 #include "tests/verification/fdem/set_ups.hpp"
 #include "tests/verification/set_ups.hpp"
 
@@ -73,6 +74,9 @@ constexpr std::array table{
     Case{"FD-8", fast, "sliding block", "Coulomb", sliding_block_set_up, sliding_block},
     Case{"FD-9", slow, "Hertz", "Hertz (1882), line contact", hertz_set_up, hertz},
     Case{"FD-10", slow, "restitution", "conservation of energy", restitution_set_up, restitution},
+    Case{"FD-13", slow, "mesh size", "seed paper, figure 12", mesh_size_set_up, mesh_size},
+    Case{"FD-14", slow, "the dataset's loading", "conservation of energy; signals with their answer", paper_loading_set_up, paper_loading},
+    Case{"FD-15", fast, "slivers", "refused, repaired or seen", slivers_set_up, slivers},
 };
 
 }  // namespace
