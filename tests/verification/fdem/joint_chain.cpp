@@ -91,11 +91,12 @@ double wave_speed(fdem::Body body, const FdemSettings& settings, double length, 
     return sum;
   };
   if (!run.start()) return NAN;
+  constexpr int between = 8;
   double before = 0.0;
   for (int passed = 0; run.n() < 100000;) {
-    run.step();
+    run.steps(between);
     const double now = swing();
-    if (before * now < 0.0 && ++passed == 3) return 3.0 * length / (run.time() - run.dt() * now / (now - before));
+    if (before * now < 0.0 && ++passed == 3) return 3.0 * length / (run.time() - between * run.dt() * now / (now - before));
     before = now;
   }
   return NAN;
@@ -125,7 +126,7 @@ template <class Real>
 double strip_speed(std::string_view name, FdemTier tier, bool shear) {
   FdemSettings settings;
   settings.tier = tier;
-  constexpr double length = 0.12, height = 0.024;
+  constexpr double length = 0.15, height = 0.03;
   fdem::MeshChoice choice;
   choice.width = length, choice.height = height;
   fdem::Body body;
@@ -139,10 +140,8 @@ double strip_speed(std::string_view name, FdemTier tier, bool shear) {
 Row strip(std::string_view name, bool shear) {
   const Material& material = *find_material(name);
   const double bulk = std::sqrt((shear ? material.elasticity.C55 : material.elasticity.C11) / material.density);
-  const double reference = strip_speed<double>(name, FdemTier::reference, shear);
   return compare(fmt::format("{}, mesh of the mesher, fast tier: c of {} waves against the bulk", name, shear ? "S" : "P"), "m/s", bulk,
-                 strip_speed<float>(name, FdemTier::fast, shear), 0.005,
-                 fmt::format("reference tier, not made up for: {:+.2f} %", 100.0 * (reference / bulk - 1.0)));
+                 strip_speed<float>(name, FdemTier::fast, shear), 0.005);
 }
 
 }  // namespace
@@ -153,6 +152,9 @@ std::vector<Row> joint_chain(Desk&) {
   rows.push_back(sleeping());
   for (const bool shear : {false, true})
     for (const std::string_view name : {"shale", "pbx"}) rows.push_back(strip(name, shear));
+  const double bulk = rows[rows.size() - 4].target, reference = strip_speed<double>("shale", FdemTier::reference, false);
+  rows.push_back(
+      report("shale, the same P waves in the reference tier, which is not made up for: c over the bulk's", "1", reference / bulk));
   return rows;
 }
 

@@ -1,0 +1,163 @@
+// FD-12: a plate with a crack in its middle, drawn out slowly: the stress that it bears against linear elastic fracture mechanics.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "common/picture/mesh_picture.hpp"
+#include "solver/fdem/mesh/make_mesh.hpp"
+#include "tests/verification/desk.hpp"
+#include "tests/verification/fdem/bodies.hpp"
+#include "tests/verification/fdem/cases.hpp"
+#include "tests/verification/pictures.hpp"
+
+namespace fracfarm::verification {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double width = 0.06, height = 0.12, half_crack = 0.015;  // m
+constexpr double young = 20e9, poisson = 0.25, toughness = 10.0, tensile = 7.3e6;
+constexpr double speed = 0.01, rise = 1.5e-4;  // m/s, of each end; s
+const Material stone = cohesive(2500.0, young, poisson, {0.6, tensile, 25e6, toughness, 10.0 * toughness});
+
+// sigma sqrt(pi a) F = sqrt(E' G), F of a finite width (Tada, Paris and Irwin, 1973).
+double critical_stress() {
+  const double share = 2.0 * half_crack / width, square = share * share;
+  const double F = (1.0 - 0.025 * square + 0.06 * square * square) / std::sqrt(std::cos(0.5 * std::numbers::pi * share));
+  return std::sqrt(young / (1.0 - poisson * poisson) * toughness / (std::numbers::pi * half_crack)) / F;
+}
+
+double ease(double t) {
+  const double s = std::clamp(t / rise, 0.0, 1.0);
+  return s * s * (3.0 - 2.0 * s);
+}
+
+struct Drawn {
+  double peak = 0.0;     // Pa
+  double first = 0.0;    // Pa: when the first joint is broken
+  double kinetic = 0.0;  // over the work, at the peak
+  std::vector<float> damage;
+  TriangleMesh mesh;
+  Line curve;
+};
+
+template <class Real>
+Drawn draw(Desk& desk, const std::string& name, fdem::Body body, const FdemSettings& settings) {
+  Drawn out;
+  body.told.push_back({corners_where(body.mesh, at_z(height)), Axis::z, [](double t) { return speed * ease(t); }, Side::top});
+  body.told.push_back({corners_where(body.mesh, at_z(0.0)), Axis::z, [](double t) { return -speed * ease(t); }, Side::bottom});
+  out.mesh = body.mesh, out.curve.name = name;
+  Run<Real> run(std::move(body), settings);
+  if (!run.start()) return out;
+  constexpr double limit = 1.2e-3;
+  while (run.time() < limit) {
+    run.steps(50);
+    const SampleRow row = run.sample();
+    if (row.stress_zz > out.peak) out.peak = row.stress_zz, out.kinetic = row.kinetic_energy / row.external_work;
+    if (out.first == 0.0 && row.fracture_energy > 0.0) {
+      const auto times = run.fdem().break_time();
+      if (std::any_of(times.begin(), times.end(), [](double t) { return !std::isnan(t); })) out.first = row.stress_zz;
+    }
+    out.curve.x.push_back(run.time()), out.curve.y.push_back(row.stress_zz);
+    desk.progress(name, run.time() / limit);
+    if (row.stress_zz < 0.5 * out.peak && out.peak > 0.2 * critical_stress()) break;
+  }
+  out.damage = run.fdem().stored_damage();
+  return out;
+}
+
+// The mesher's triangles, all joints awake, fast tier.
+Drawn free_path(Desk& desk, double h, std::uint64_t seed) {
+  fdem::MeshChoice choice;
+  choice.width = width, choice.height = height, choice.element_size = h, choice.seed = seed;
+  choice.cracks = {{0.5 * width - half_crack, 0.5 * height, 0.5 * width + half_crack, 0.5 * height}};
+  fdem::Body body;
+  body.mesh = fdem::make_mesh(choice).value().mesh, body.materials = {stone};
+  FdemSettings settings;
+  settings.element_size = h;
+  return draw<float>(desk, fmt::format("mesher, h = {:g} mm, seed {}", 1e3 * h, seed), std::move(body), settings);
+}
+
+// Lines that get farther apart away from `middle`: `fine` up to `until` from it, then a quarter farther each.
+std::vector<double> graded(double from, double to, double middle, double fine, double until) {
+  std::vector<double> up, places;
+  for (const double end : {to, from}) {
+    const double room = std::abs(end - middle), way = end > middle ? 1.0 : -1.0;
+    std::vector<double> steps;
+    double sum = 0.0, step = fine;
+    while (sum < room - 1e-12) {
+      if (sum >= until) step *= 1.25;
+      steps.push_back(step), sum += step;
+    }
+    const double coarse = room - until, scale = (sum - until) > 0.0 ? coarse / (sum - until) : 1.0;
+    double at = 0.0;
+    std::vector<double> side;
+    for (const double s : steps) at += at < until - 1e-12 ? s : s * scale, side.push_back(middle + way * at);
+    if (!side.empty()) side.back() = end;
+    if (way > 0.0)
+      up = side;
+    else
+      places.assign(side.rbegin(), side.rend());
+  }
+  places.push_back(middle);
+  places.insert(places.end(), up.begin(), up.end());
+  return places;
+}
+
+// The right half, on squares of h along the crack's line, where alone there are joints.
+Drawn straight_path(Desk& desk, double h) {
+  fdem::Body body;
+  body.mesh = crossed_mesh(parts_of(0.0, 0.5 * width, static_cast<int>(std::lround(0.5 * width / h))),
+                           graded(0.0, height, 0.5 * height, h, 4.0 * h));
+  body.materials = {stone};
+  body.asleep.assign(body.mesh.edge_nodes.size(), 1);
+  for (const int e : edges_where(body.mesh, at_z(0.5 * height))) {
+    const auto [a, b] = body.mesh.edge_nodes[static_cast<Index>(e)];
+    body.asleep[static_cast<Index>(e)] = 0;
+    if (body.mesh.nodes[static_cast<Index>(a)][0] + body.mesh.nodes[static_cast<Index>(b)][0] < 2.0 * half_crack)
+      body.mesh.edge_kind[static_cast<Index>(e)] = EdgeKind::crack;
+  }
+  body.told.push_back(held(corners_where(body.mesh, at_x(0.0)), Axis::x));
+  FdemSettings settings = reference_settings(h);
+  settings.penalty = 30.0;
+  return draw<double>(desk, fmt::format("straight, h = {:g} mm", 1e3 * h), std::move(body), settings);
+}
+
+Row row_of(const Drawn& drawn, double target, double tolerance) {
+  Row row = compare(drawn.curve.name + ": largest mean stress", "Pa", target, drawn.peak, tolerance,
+                    fmt::format("{:+.1f} %; {:+.1f} % when the first joint is broken; kinetic energy at the peak {:.2f} % of the work",
+                                100.0 * (drawn.peak / target - 1.0), 100.0 * (drawn.first / target - 1.0), 100.0 * drawn.kinetic));
+  if (std::isinf(tolerance)) row.judged = false, row.passed = true;
+  return row;
+}
+
+}  // namespace
+
+std::vector<Row> centre_crack(Desk& desk) {
+  const double target = critical_stress();
+  std::vector<Row> rows;
+  std::vector<Line> curves;
+  TriangleMesh mesh;
+  std::vector<float> damage;
+  const auto add = [&](Drawn drawn, double tolerance) {
+    rows.push_back(row_of(drawn, target, tolerance));
+    drawn.curve.colour = palette[curves.size() % std::size(palette)];
+    curves.push_back(std::move(drawn.curve));
+    mesh = std::move(drawn.mesh), damage = std::move(drawn.damage);
+  };
+  desk.part(0.0, 0.2);
+  add(straight_path(desk, 0.002), INFINITY);
+  add(straight_path(desk, 0.001), 0.07);
+  desk.part(0.2, 0.3);
+  add(free_path(desk, 0.002, 1), INFINITY);
+  add(free_path(desk, 0.001, 1), INFINITY);
+  desk.part(0.5, 0.5);
+  add(free_path(desk, 0.0005, 1), 0.07);
+  desk.add({"centre_crack", "FD-12: the finest of the mesher's plates after its peak, red where joints are broken.",
+            picture::draw_mesh(mesh, damage, 420)});
+  desk.add({"centre_crack_stress", "FD-12: mean stress of the plates.", chart_page({{"", {"time", "s"}, {"mean stress", "Pa"}, curves}})});
+  return rows;
+}
+
+}  // namespace fracfarm::verification
