@@ -84,8 +84,24 @@ void read_fdem(Fields& top, Scene& scene) {
   fields.done();
 }
 
+// Tiers that compensate take the joints' compliance, about sqrt(3) / (p h), out of the triangles': what is left must be well above 0 in
+// every direction, or the body pushes back the wrong way.
+void check_penalty(const Scene& scene, ProblemList& problems) {
+  if (scene.fdem.tier == FdemTier::reference) return;
+  for (const Layer& layer : scene.layers) {
+    const Elasticity& C = layer.material.elasticity;
+    const double mean = 0.5 * (C.C11 + C.C33), stiffest = std::max(2.0 * C.C55, mean + std::hypot(0.5 * (C.C11 - C.C33), C.C13));
+    const double least = 2.5 * stiffest / C.C11;
+    if (scene.fdem.penalty.value_or(10.0) < least)
+      problems.add("fdem.penalty", shortest(scene.fdem.penalty.value_or(10.0)),
+                   fmt::format("at least {:.3g} for {} in the tiers that compensate the joints", least, layer.material.name),
+                   "or fdem.tier \"reference\"");
+  }
+}
+
 void check_fdem(const Scene& scene, ProblemList& problems) {
   check_materials(scene, problems);
+  check_penalty(scene, problems);
   const double h = scene.fdem.element_size, shorter = std::min(scene.width, scene.height);
   if (h * least_elements > shorter * (1.0 + 1e-12))
     problems.add("fdem.element_size", shortest(h),

@@ -30,6 +30,26 @@ TEST_CASE("an FDEM scene has the fast tier, elements of 3 mm and its own horizon
   CHECK(scene_of(pbx).horizon == 4e-3);
 }
 
+TEST_CASE("a penalty that leaves the triangles no stiffness between the joints is refused where joints are compensated") {
+  CHECK(problem_at(problems_of(fdem_scene({{"penalty", 2.0}})), "fdem.penalty").limit.find("at least") != std::string::npos);
+  CHECK(scene_of(fdem_scene({{"penalty", 4.0}})).fdem.penalty == 4.0);
+  CHECK(scene_of(fdem_scene({{"tier", "reference"}, {"penalty", 2.0}})).fdem.penalty == 2.0);
+  json stiff_upwards = fdem_scene();
+  stiff_upwards["material"] = {{"density", 2500.0},
+                               {"C11", 1e10},
+                               {"C33", 6e10},
+                               {"C13", 1e9},
+                               {"C55", 4e9},
+                               {"Gc", 20.0},
+                               {"characteristic_width", 0.004},
+                               {"friction", 0.5},
+                               {"tensile_strength", 5e6},
+                               {"shear_strength", 2e7},
+                               {"GI", 30.0},
+                               {"GII", 100.0}};
+  problem_at(problems_of(stiff_upwards), "fdem.penalty");
+}
+
 TEST_CASE("the screening tier has elements twice as long, unless they are given") {
   CHECK(scene_of(fdem_scene({{"tier", "screening"}})).fdem.element_size == 0.006);
   CHECK(scene_of(fdem_scene({{"tier", "screening"}, {"element_size", 0.004}})).fdem.element_size == 0.004);

@@ -195,7 +195,8 @@ void draw_case(picture::Canvas& canvas, int y, const MethodCase& one) {
     return picture::draw_field({run.ending.psi, columns, rows}, side, side);
   };
   const auto told = [](const FieldRun& run, const char* loads) {
-    return fmt::format("{}: {:.1f} MPa, stress drop {:.0f} us", loads, 1e-6 * run.ending.peak, 1e6 * run.ending.stress_drop.value_or(NAN));
+    return fmt::format("{}: {:.1f} MPa, {} {:.0f} us", loads, 1e-6 * run.ending.peak,
+                       run.ending.rule == "through_crack" ? "through crack" : run.ending.rule, 1e6 * run.ending.time.value_or(NAN));
   };
   words(0, fmt::format("{} {}, FDEM: {:.1f} MPa, drop10 {:.0f} us", one.which.material, one.which.pattern, 1e-6 * one.fdem.peak,
                        1e6 * one.fdem.drop10.value_or(NAN)));

@@ -84,7 +84,7 @@ void find_edges(Point& point) {
 std::vector<Point> map_points(const std::vector<std::string>& materials) {
   std::vector<Point> points;
   for (const std::string& material : materials) {
-    for (const double penalty : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+    for (const double penalty : {4.0, 6.0, 10.0, 20.0, 50.0, 100.0})
       points.push_back({material, "penalty", FdemTier::fast, penalty, 0.1, 1.0});
     points.push_back({material, "penalty", FdemTier::reference, 100.0, 0.1, 1.0});
     for (const double viscosity : {0.0, 0.03, 0.1, 0.3, 1.0})
