@@ -77,7 +77,6 @@ void step(benchmark::State& state) {
   }
   state.counters["sides"] = static_cast<double>(contact.surface().sides().size());
   state.counters["near_pairs"] = static_cast<double>(contact.near_pairs().pairs().size());
-  state.counters["below"] = static_cast<double>(contact.near_pairs().below().size());
   state.counters["touches"] = touches / steps;
   state.counters["selections"] = static_cast<double>(contact.near_pairs().selections()) / steps;
 }

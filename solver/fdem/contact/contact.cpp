@@ -55,7 +55,7 @@ void Contact<Real>::find_touches() {
   touches_.clear();
   places_.clear();
   const std::vector<SideNow>& now = near_.now();
-  for (const SidePair& pair : near_.below()) {
+  for (const SidePair& pair : near_.pairs()) {
     const std::size_t u = static_cast<std::size_t>(pair.target), v = static_cast<std::size_t>(pair.side);
     const ExposedSide &target = surface_.sides()[u], &side = surface_.sides()[v];
     if (!may_touch(now[u], now[v], side.depth_limit, 0.0) || !sound(target, now[u]) || !sound(side, now[v])) continue;

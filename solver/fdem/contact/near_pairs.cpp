@@ -17,16 +17,13 @@ double change(const SideNow& a, const SideNow& b) {
 // A corner whose coordinates changed by `most` at most has moved this far at most; within `margin`?
 bool within(double most, double margin) { return 4.0 * std::numbers::sqrt2 * most <= margin; }
 
-}  // namespace
-
 template <class Real>
-void NearPairs::place(std::size_t i, const SideNow& undeformed, const Real* u) {
-  const SideNow now{undeformed.ax + static_cast<double>(u[0]), undeformed.az + static_cast<double>(u[1]),
-                    undeformed.bx + static_cast<double>(u[2]), undeformed.bz + static_cast<double>(u[3])};
-  const double ex = point_place.front() * (now.bx - now.ax), ez = point_place.front() * (now.bz - now.az);
-  now_[i] = now;
-  outer_[i] = {{now.ax + ex, now.bx - ex}, {now.az + ez, now.bz - ez}};
+SideNow placed(const SideNow& undeformed, const Real* u) {
+  return {undeformed.ax + static_cast<double>(u[0]), undeformed.az + static_cast<double>(u[1]), undeformed.bx + static_cast<double>(u[2]),
+          undeformed.bz + static_cast<double>(u[3])};
 }
+
+}  // namespace
 
 // Where the sides are now, and the largest change of a coordinate of the known ones since the near list was made.
 template <class Real>
@@ -35,10 +32,10 @@ double NearPairs::move(const Surface& surface, const Real* displacement) {
   const int* rows = surface.rows().data();
   double most = 0.0;
   for (std::size_t i = 0; i < known_; ++i) {
-    place(i, undeformed[i], displacement + rows[i]);
+    now_[i] = placed(undeformed[i], displacement + rows[i]);
     most = larger(change(now_[i], at_near_[i]), most);
   }
-  for (std::size_t i = known_; i < now_.size(); ++i) place(i, undeformed[i], displacement + rows[i]);
+  for (std::size_t i = known_; i < now_.size(); ++i) now_[i] = placed(undeformed[i], displacement + rows[i]);
   return most;
 }
 
@@ -52,7 +49,7 @@ template <class Real>
 void NearPairs::follow(const Surface& surface, const Real* displacement) {
   const std::size_t all = surface.sides().size();
   before_.swap(now_);
-  now_.resize(all), outer_.resize(all);
+  now_.resize(all);
   const std::size_t placed = before_.size();
   const double moved = move(surface, displacement);
   before_.insert(before_.end(), now_.begin() + static_cast<std::ptrdiff_t>(placed), now_.end());
@@ -66,7 +63,6 @@ void NearPairs::follow(const Surface& surface, const Real* displacement) {
   } else if (known_ < all) {
     admit(surface);
   }
-  look();
 }
 
 void NearPairs::search(const Surface& surface) {
@@ -111,25 +107,6 @@ void NearPairs::part(const Surface& surface) {
     else
       near_[kept++] = pair;
   near_.resize(kept);
-}
-
-// may_touch without margin and depth limit: most pairs are apart, and this is all that is computed of them.
-void NearPairs::look() {
-  below_.resize(near_.size());
-  std::size_t found = 0;
-  for (const SidePair& pair : near_) {
-    const OuterPoints& p = outer_[static_cast<std::size_t>(pair.target)];
-    const SideNow& side = now_[static_cast<std::size_t>(pair.side)];
-    const double ex = side.bx - side.ax, ez = side.bz - side.az;
-    double depth[2], left[2], right[2];  // times the side's length; beside the mitres
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double x = p.x[k] - side.ax, z = p.z[k] - side.az, along = ex * x + ez * z;
-      depth[k] = ex * z - ez * x, left[k] = along + depth[k], right[k] = along - depth[k];
-    }
-    below_[found] = pair;
-    found += (larger(depth[0], depth[1]) > 0.0) & (larger(left[0], left[1]) > 0.0) & (std::min(right[0], right[1]) < ex * ex + ez * ez);
-  }
-  below_.resize(found);
 }
 
 template void NearPairs::follow<float>(const Surface&, const float*);

@@ -2,7 +2,6 @@
 // anew only when something has moved a quarter of its margin. What they leave out cannot touch, so their state never changes a result.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -10,11 +9,6 @@
 #include "solver/fdem/contact/surface.hpp"
 
 namespace fracfarm::fdem {
-
-// The first and the last Gauss point of a side.
-struct OuterPoints {
-  std::array<double, 2> x, z;
-};
 
 class NearPairs {
  public:
@@ -29,13 +23,10 @@ class NearPairs {
   const std::vector<SideNow>& now() const { return now_; }
   const std::vector<SideNow>& before() const { return before_; }  // one follow() ago
   std::span<const SidePair> pairs() const { return near_; }       // sorted
-  std::span<const SidePair> below() const { return below_; }      // of pairs(): those that may touch now
   long searches() const { return searches_; }                     // by cells, since the start
   long selections() const { return selections_; }                 // of near pairs from far ones
 
  private:
-  template <class Real>
-  void place(std::size_t i, const SideNow& undeformed, const Real* u);
   template <class Real>
   double move(const Surface& surface, const Real* displacement);
   double moved_since(const std::vector<SideNow>& then) const;
@@ -43,15 +34,13 @@ class NearPairs {
   void select(const Surface& surface);
   void admit(const Surface& surface);
   void part(const Surface& surface);
-  void look();
 
   double far_margin_, near_margin_;  // m
   std::size_t known_ = 0;            // sides in the lists
   std::vector<SideNow> now_, before_;
   std::vector<SideNow> at_far_, at_near_;  // where the sides were when the lists were made
-  std::vector<SidePair> far_, near_, below_;
+  std::vector<SidePair> far_, near_;
   std::vector<SidePair> cornered_;  // near, but at one corner of one body: may part when an edge there breaks
-  std::vector<OuterPoints> outer_;  // of now_
   CellSearch cells_;
   long searches_ = 0, selections_ = 0;
 };
