@@ -59,8 +59,8 @@ TEST_CASE("Jobs behind those that fill the slots must fit behind them") {
   Claim taking({.node = "n1", .free_slots = 100, .remaining_s = 40.0, .slots = 2}, learned);
   int taken = 0;
   while (taking.left() > 0 && taking.fits(quick, 3600.0)) taking.take(quick, 3600.0), ++taken;
-  // Each takes 2 x 1 s + 10 s at most: two at once, then each two 12 s later.
-  CHECK(taken == 6);
+  // Each takes 1.5 x 1 s + 10 s at most: two at once, then one more every 5.75 s.
+  CHECK(taken == 5);
 }
 
 TEST_CASE("What is left of an allocation is filled with what still fits") {
