@@ -30,8 +30,7 @@ struct ContactSettings {
   std::vector<double> triangle_penalty{};  // Pa, where materials differ; empty: `penalty` everywhere
 };
 
-// Undeformed corners of every triangle: rows of 8, x0 z0 x1 z1 x2 z2 x0 z0, m, counter-clockwise. Edge k goes from corner k to corner k
-// + 1.
+// Undeformed corners of every triangle: rows of 8, x0 z0 x1 z1 x2 z2 x0 z0, m, counter-clockwise. Edge k starts at corner k.
 using CornerRows = std::vector<double>;
 
 struct ContactEnergies {
@@ -47,9 +46,8 @@ class Contact {
   Contact(const CornerRows& corners, std::span<const TriangleSide> neighbour, ContactSettings settings);
 
   // A side can be touched from now on; of an edge between two triangles expose both. An overlap with the side across that is there already
-  // goes on pressing with the stiffness of contact where a joint pressed until now (an edge that breaks), and is forgotten where nothing
-  // did
-  // (`was_joined` false: a crack from the start).
+  // goes on pressing, with the stiffness of contact, where a joint pressed until now (an edge that breaks). Where nothing did (`was_joined`
+  // false: a crack from the start) it is forgotten.
   void expose(TriangleSide side, bool was_joined = true) { surface_.expose({side, was_joined}); }
   bool any() const { return !surface_.order().empty(); }
 
