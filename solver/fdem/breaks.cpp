@@ -11,18 +11,49 @@ using Index = std::size_t;
 
 }  // namespace
 
+// Right triangle less left one at both ends of the edge, m.
+template <class Real>
+std::array<Real, 4> Fdem<Real>::opening_of(int joint) const {
+  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[static_cast<Index>(joint)])],
+             *right = &scratch_.rows[static_cast<Index>(plan_.right_row[static_cast<Index>(joint)])];
+  return {right[2] - left[0], right[3] - left[1], right[0] - left[2], right[1] - left[3]};
+}
+
+template <class Real>
+void Fdem<Real>::follow_stretched() {
+  for (int b = 0; b < plan_.joint_blocks(); ++b) {
+    if (!scratch_.stretched[static_cast<Index>(b)]) continue;
+    for (int joint = b * lanes; joint < (b + 1) * lanes; ++joint) {
+      const auto [ax, az, bx, bz] = opening_of(joint);
+      if (std::max(ax * ax + az * az, bx * bx + bz * bz) > scratch_.reach[static_cast<Index>(joint)])
+        follow(plan_, state_, scratch_, joint, {ax, az, bx, bz});
+    }
+  }
+}
+
+// False where these are no joints.
+template <class Real>
+bool Fdem<Real>::follow_again(const std::vector<int>& joints) {
+  for (const int joint : joints) {
+    const bool known = joint >= 0 && joint < plan_.joints && plan_.edge_of[static_cast<Index>(joint)] >= 0;
+    if (!known || scratch_.place_of[static_cast<Index>(joint)] >= 0) return false;
+    follow(plan_, state_, scratch_, joint, {});
+  }
+  return true;
+}
+
 template <class Real>
 void Fdem<Real>::note_breaks(double time) {
-  for (int b = 0; b < plan_.joint_blocks(); ++b) {
-    if (!(state_.joint_state[static_cast<Index>(b)] & joint_broke)) continue;
+  for (int b = 0; b < followed_blocks(); ++b) {
+    if (!scratch_.breaks[static_cast<Index>(b)]) continue;
     for (int l = 0; l < lanes; ++l) {
       const Index at = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
-      const int edge = plan_.edge_of[static_cast<Index>(b * lanes + l)];
-      if (edge < 0 || state_.damage[at] < Real(1) || state_.damage[at + lanes] < Real(1)) continue;
-      double& broke = state_.break_time[static_cast<Index>(edge)];
-      if (!std::isnan(broke)) continue;
-      broke = time, state_.break_mode[static_cast<Index>(edge)] = static_cast<unsigned char>(mode_of(b, l));
-      expose(plan_.left_side[static_cast<Index>(b * lanes + l)]), expose(plan_.right_side[static_cast<Index>(b * lanes + l)]);
+      const int joint = scratch_.joint_at[static_cast<Index>(b * lanes + l)];
+      if (joint < 0 || state_.damage[at] < Real(1) || state_.damage[at + lanes] < Real(1)) continue;
+      const Index edge = static_cast<Index>(plan_.edge_of[static_cast<Index>(joint)]);
+      if (!std::isnan(state_.break_time[edge])) continue;
+      state_.break_time[edge] = time, state_.break_mode[edge] = static_cast<unsigned char>(mode_of(joint));
+      expose(plan_.left_side[static_cast<Index>(joint)]), expose(plan_.right_side[static_cast<Index>(joint)]);
     }
   }
 }
@@ -65,18 +96,16 @@ bool Fdem<Real>::a_crack_closes() const {
 
 // By the shares of opening and sliding, each of what breaks the joint alone, in their squares: three quarters of one name it.
 template <class Real>
-BreakMode Fdem<Real>::mode_of(int b, int l) const {
-  const Index joint = static_cast<Index>(b * lanes + l), line = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
-  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[joint])],
-             *right = &scratch_.rows[static_cast<Index>(plan_.right_row[joint])];
+BreakMode Fdem<Real>::mode_of(int joint) const {
+  const Index j = static_cast<Index>(joint), line = static_cast<Index>((joint / lanes) * 2 * lanes + joint % lanes);
+  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[j])], *right = &scratch_.rows[static_cast<Index>(plan_.right_row[j])];
   double x = plan_.along[line], z = plan_.along[line + lanes];
   x += 0.5 * ((double(left[2]) - left[0]) + (double(right[0]) - right[2]));
   z += 0.5 * ((double(left[3]) - left[1]) + (double(right[1]) - right[3]));
-  const double ends[2][2] = {{double(right[2]) - left[0], double(right[3]) - left[1]},
-                             {double(right[0]) - left[2], double(right[1]) - left[3]}};
-  const auto& law = plan_.joint_laws[static_cast<Index>(plan_.joint_law_of_block[static_cast<Index>(b)])];
+  const auto [ax, az, bx, bz] = opening_of(joint);
+  const auto& law = plan_.joint_laws[static_cast<Index>(plan_.joint_law_of_block[static_cast<Index>(joint / lanes)])];
   double opens = 0.0, slides = 0.0;
-  for (const auto& [dx, dz] : ends) {
+  for (const auto& [dx, dz] : {std::array<double, 2>{ax, az}, std::array<double, 2>{bx, bz}}) {
     const double n = std::max(0.0, dx * z - dz * x) * law.per_rupture_n, t = (dx * x + dz * z) * law.per_rupture_t;
     opens += n * n, slides += t * t;
   }
@@ -84,10 +113,12 @@ BreakMode Fdem<Real>::mode_of(int b, int l) const {
   return share >= 0.75 ? BreakMode::tension : share <= 0.25 ? BreakMode::shear : BreakMode::mixed;
 }
 
-#define FRACFARM_INSTANTIATE(Real)               \
-  template void Fdem<Real>::note_breaks(double); \
-  template void Fdem<Real>::expose(int);         \
-  template void Fdem<Real>::watch_side(int);     \
+#define FRACFARM_INSTANTIATE(Real)                                 \
+  template void Fdem<Real>::note_breaks(double);                   \
+  template void Fdem<Real>::follow_stretched();                    \
+  template bool Fdem<Real>::follow_again(const std::vector<int>&); \
+  template void Fdem<Real>::expose(int);                           \
+  template void Fdem<Real>::watch_side(int);                       \
   template void Fdem<Real>::expose_cracks_that_close();
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

@@ -31,10 +31,16 @@ struct TriangleLaw {
 // What a block of triangles needs beside its own motion; 0 for most.
 enum BlockNeeds : unsigned char { needs_extra = 1, needs_told = 2 };
 
-// What a block of joints went through.
-enum JointState : unsigned char { joint_followed = 1, joint_damaged = 2, joint_broke = 4 };
-
 enum class Curve { munjiza, linear };
+
+// Joints in blocks of one law; a pad has no length and two triangles of its own.
+template <class Real>
+struct JointPlaces {
+  const int *left_row, *right_row;    // [b][l], places in `rows`
+  const int *left_slot, *right_slot;  // [b][l], places in `slots`
+  const Real* length;                 // [b][l], m; 0: no spring
+  const int* law_of_block;            // [b]
+};
 
 // Raw pointers: what every kernel sees. [b] is a block, [l] a lane in it.
 template <class Real>
@@ -52,18 +58,16 @@ struct View {
   const int* told_of_block;          // [b], index into the arrays below
   const Real *told, *told_velocity;  // [i][corner_count][l]: 1 where the velocity is told, and that velocity of the next half step
   Real* told_force;                  // [i][corner_count][l], N/m: internal force and extra
-  // Joints.
-  const int *left_row, *right_row;    // [b][l], places in `rows`
-  const int *left_slot, *right_slot;  // [b][l], places in `slots`
-  const Real* length;                 // [b][l], m
-  const Real* along;                  // [b][2][l], m: from the first node to the second, undeformed
-  Real* damage;                       // [b][2][l], at the two points
-  Real* opening;                      // [b][4][l], m: at both nodes, where the block was followed
-  unsigned char* joint_state;         // [b], JointState
+  // Joints that are springs so far, and those that are followed (with damage, or near it).
+  JointPlaces<Real> springs, followed;
+  const Real* reach;         // [b][l], m^2: springs that open further at an end must be followed; largest number where none can
+  unsigned char* stretched;  // [b]: 1 where a spring of the block does
+  const Real* along;         // [b][2][l], m: of followed joints, from the first node to the second, undeformed
+  Real* damage;              // [b][2][l], at the two points
+  Real *opening, *force;     // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
+  unsigned char* breaks;     // [b]: 1 where a followed joint of the block broke in this step
   const law::Joint<Real>* joint_laws;
-  const int* joint_law_of_block;  // [b]
   Curve curve;
-  bool always_follow;  // the damage arithmetic in every block
   bool always_flow;    // the radial return in every block
   Real least_kinetic;  // m^2/s^2, of a triangle's v- v+
 };
@@ -76,11 +80,6 @@ struct Blocks {
 struct AdvanceSums {
   double viscous;  // W/m: power of viscosity before the kick
   double plastic;  // J/m
-};
-
-struct JointSums {
-  double stored;    // J/m
-  double fracture;  // J/m, gone in this step
 };
 
 // The state as it is, without moving it.
@@ -98,8 +97,12 @@ struct Kernels {
   // Forces at u, v += dt f / m, u += dt v.
   AdvanceSums (*advance)(const View<Real>&, Blocks, Real dt);
   TriangleSums (*measure)(const View<Real>&, Blocks, Real dt);
-  // Traction of the joints at u, into the slots of both sides.
-  JointSums (*join)(const View<Real>&, Blocks);
+  // Forces of the springs at u into the slots of both sides; which of them must be followed from now on.
+  void (*join)(const View<Real>&, Blocks);
+  // The same of followed joints, over what join left there; returns the work that is gone, J/m.
+  double (*follow)(const View<Real>&, Blocks);
+  // What springs store, J/m.
+  double (*stored)(const View<Real>&, Blocks);
 };
 
 // Paths that this processor runs, best first; the last is the baseline, which every processor runs.

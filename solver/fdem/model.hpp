@@ -27,7 +27,7 @@ struct PulledCorner {
 
 template <class Real>
 struct Model {
-  Field<Real> shape, length, along;
+  Field<Real> shape;
   std::vector<TriangleLaw<Real>> laws;
   std::vector<law::Joint<Real>> joint_laws;
   std::vector<int> told_of_block;
@@ -37,11 +37,10 @@ struct Model {
   bool plastic = false;
 };
 
-// Sums over the body at the instant of the state, as far as the joints know them.
+// Sums over the body and the run.
 struct Ledger {
-  double joints_stored = 0.0;  // J/m
-  double fracture = 0.0;       // J/m since t = 0, as all below
-  double viscous = 0.0;        // up to the kick before the last
+  double fracture = 0.0;  // J/m since t = 0, as all below
+  double viscous = 0.0;   // up to the kick before the last
   double plastic = 0.0;
   double external_work = 0.0;   // of whole steps; the last half is the sample's
   double initial_energy = 0.0;  // before the boundary moved
@@ -49,12 +48,12 @@ struct Ledger {
 
 template <class Real>
 struct State {
-  Field<Real> u, v;                        // [block][corner_count][lane]
-  Field<Real> slots;                       // forces of the joints at u, N/m
-  Field<Real> plastic;                     // [block][4][lane]
-  Field<Real> damage, opening;             // [block][2][lane], [block][4][lane]
-  std::vector<unsigned char> joint_state;  // by block
-  std::vector<double> break_time;          // by edge
+  Field<Real> u, v;                    // [block][corner_count][lane]
+  Field<Real> slots;                   // forces of the joints at u, N/m
+  Field<Real> plastic;                 // [block][4][lane]
+  std::vector<int> followed;           // joints, in the order they came
+  Field<Real> damage, opening, force;  // of followed joints: [block][2][lane], [block][4][lane], [block][4][lane]
+  std::vector<double> break_time;      // by edge
   std::vector<unsigned char> break_mode;
   Field<Real> extra;         // rows of tractions, weight and contact at u, N/m
   std::vector<int> exposed;  // sides that contact knows, in the order they came
@@ -65,8 +64,26 @@ struct State {
 enum class Stage { boundary, triangles, joints, contact };
 inline constexpr std::array<const char*, 4> stage_names{"boundary", "triangles", "joints", "contact"};
 
+// Joints as the kernels go through them.
+template <class Real>
+struct JointList {
+  std::vector<int> left_row, right_row, left_slot, right_slot, law_of_block;
+  Field<Real> length;
+  JointPlaces<Real> places() const {
+    return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), law_of_block.data()};
+  }
+};
+
 template <class Real>
 struct Scratch {
+  JointList<Real> springs;               // all joints, without length where they are followed
+  Field<Real> reach;                     // of springs
+  std::vector<unsigned char> stretched;  // by block of springs
+  JointList<Real> followed;              // by places in the blocks of followed joints
+  Field<Real> along;
+  std::vector<unsigned char> breaks;      // by block of followed joints
+  std::vector<int> joint_at, place_of;    // joint of a place, -1: a pad; place of a joint, -1: a spring
+  std::vector<int> free_place;            // by law: next place in its last block, a multiple of `lanes` where that is full
   Field<Real> rows;                       // of u
   Field<Real> told_velocity, told_force;  // of the told blocks
   std::vector<double> told_before;        // by told degree of freedom, m/s, half a step before
@@ -81,6 +98,10 @@ Model<Real> make_model(const Plan& plan, const Body& body);
 // At t = 0: displacements and velocities of the body, no damage but where the plan has pads.
 template <class Real>
 State<Real> make_state(const Plan& plan, const Model<Real>& model, const Body& body);
+
+// From now on the joint is followed, undamaged, as it would be had it opened straight to where it is (both ends, m).
+template <class Real>
+void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening);
 
 template <class Real>
 Scratch<Real> make_scratch(const Plan& plan, const Model<Real>& model, const Body& body);

@@ -53,13 +53,13 @@ View<Real> Fdem<Real>::view() const {
   v.plastic = s.plastic.data(), v.needs = scratch_.needs.data(), v.extra = s.extra.data();
   v.told_of_block = model_.told_of_block.data(), v.told = model_.told.data();
   v.told_velocity = scratch_.told_velocity.data(), v.told_force = scratch_.told_force.data();
-  v.left_slot = plan_.left_slot.data(), v.right_slot = plan_.right_slot.data();
-  v.left_row = plan_.left_row.data(), v.right_row = plan_.right_row.data();
-  v.length = model_.length.data(), v.along = model_.along.data();
-  v.damage = s.damage.data(), v.opening = s.opening.data(), v.joint_state = s.joint_state.data();
-  v.joint_laws = model_.joint_laws.data(), v.joint_law_of_block = plan_.joint_law_of_block.data();
+  v.springs = scratch_.springs.places(), v.followed = scratch_.followed.places();
+  v.reach = scratch_.reach.data(), v.stretched = scratch_.stretched.data();
+  v.along = scratch_.along.data(), v.breaks = scratch_.breaks.data();
+  v.damage = s.damage.data(), v.opening = s.opening.data(), v.force = s.force.data();
+  v.joint_laws = model_.joint_laws.data();
   v.curve = curve_of(settings_);
-  v.always_follow = !rules_.damage_where_stretched, v.always_flow = !rules_.flow_where_it_yields;
+  v.always_flow = !rules_.flow_where_it_yields;
   // Past the edge of the step v- v+ is less than 0 and hides what grows: counted as 0, it shows as energy that nobody brought. Corners that
   // are tied have their common v+ only after the kick: there the sum alone is right.
   v.least_kinetic = plan_.ties.empty() ? Real(0) : std::numeric_limits<Real>::lowest();
@@ -90,12 +90,24 @@ TriangleSums Fdem<Real>::measure(double dt) const {
 
 template <class Real>
 void Fdem<Real>::join(double time) {
+  const View<Real> before = view();
+  in_chunks<char>(plan_.joint_blocks(), threads_, [&](Blocks blocks) { return kernels_.join(before, blocks), '\0'; });
+  follow_stretched();
   const View<Real> v = view();
-  state_.ledger.joints_stored = 0.0;
-  for (const JointSums& part :
-       in_chunks<JointSums>(plan_.joint_blocks(), threads_, [&](Blocks blocks) { return kernels_.join(v, blocks); }))
-    state_.ledger.joints_stored += part.stored, state_.ledger.fracture += part.fracture;
+  for (const double lost : in_chunks<double>(followed_blocks(), threads_, [&](Blocks blocks) { return kernels_.follow(v, blocks); }))
+    state_.ledger.fracture += lost;
   note_breaks(time);
+}
+
+template <class Real>
+double Fdem<Real>::stored_in_joints() const {
+  const View<Real> v = view();
+  double sum = 0.0;
+  for (const double part : in_chunks<double>(plan_.joint_blocks(), threads_, [&](Blocks blocks) { return kernels_.stored(v, blocks); }))
+    sum += part;
+  double followed = 0.0;
+  for (Index i = 0; i < state_.force.size(); ++i) followed += static_cast<double>(state_.force[i]) * static_cast<double>(state_.opening[i]);
+  return sum + 0.5 * followed;
 }
 
 template <class Real>
@@ -120,6 +132,9 @@ template <class Real>
 Result<void> Fdem<Real>::start(double dt) {
   dt_ = dt;
   put_rows();
+  if (!rules_.damage_where_stretched)
+    for (int joint = 0; joint < plan_.joints; ++joint)
+      if (plan_.edge_of[static_cast<Index>(joint)] >= 0) follow(plan_, state_, scratch_, joint, {});
   join(0.0);
   pull(0.0);
   for (const Corner side : body_.exposed) expose(plan_.corner_of(side));
@@ -136,7 +151,7 @@ Result<void> Fdem<Real>::start(double dt) {
   tell_velocities(0.5 * dt);
   const TriangleSums sums = measure(dt);
   state_.ledger.external_work = given;
-  state_.ledger.initial_energy = sums.kinetic + sums.elastic + state_.ledger.joints_stored - given;
+  state_.ledger.initial_energy = sums.kinetic + sums.elastic + stored_in_joints() - given;
   return {};
 }
 
@@ -186,7 +201,7 @@ SampleRow Fdem<Real>::sample(long long n, double dt) const {
   row.stress_xx = sums.stress_xx / plan_.area, row.stress_zz = sums.stress_zz / plan_.area;
   row.reaction = reactions(dt);
   row.kinetic_energy = sums.kinetic;
-  row.elastic_energy = sums.elastic + ledger.joints_stored;
+  row.elastic_energy = sums.elastic + stored_in_joints();
   row.plastic_energy = ledger.plastic + sums.plastic;
   const ContactEnergies& contact = contact_.energies();
   row.contact_energy = contact.stored, row.friction_energy = contact.friction;
@@ -204,7 +219,9 @@ std::vector<float> Fdem<Real>::stored_damage() const {
     const int joint = plan_.joint_of[edge];
     if (body_.mesh.edge_kind[edge] == EdgeKind::crack) damage[edge] = 2.0F;
     if (joint < 0) continue;
-    const Index at = static_cast<Index>((joint / lanes) * 2 * lanes + joint % lanes);
+    const int place = scratch_.place_of[static_cast<Index>(joint)];
+    if (place < 0) continue;
+    const Index at = static_cast<Index>((place / lanes) * 2 * lanes + place % lanes);
     damage[edge] = static_cast<float>(Real(0.5) * (state_.damage[at] + state_.damage[at + lanes]));
   }
   return damage;
@@ -213,8 +230,10 @@ std::vector<float> Fdem<Real>::stored_damage() const {
 template <class Real>
 void Fdem<Real>::save(ArchiveWriter& archive) const {
   const State<Real>& s = state_;
-  for (const Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.put_array(*field);
-  archive.put_array(s.joint_state), archive.put_array(s.break_time), archive.put_array(s.break_mode);
+  for (const Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.extra}) archive.put_array(*field);
+  archive.put_array(s.followed);
+  for (const Field<Real>* field : {&s.damage, &s.opening, &s.force}) archive.put_array(*field);
+  archive.put_array(s.break_time), archive.put_array(s.break_mode);
   archive.put_array(s.exposed), archive.put(s.cracks_exposed);
   archive.put(s.ledger);
   contact_.save(archive);
@@ -223,8 +242,15 @@ void Fdem<Real>::save(ArchiveWriter& archive) const {
 template <class Real>
 bool Fdem<Real>::load(ArchiveReader& archive, long long n, double dt) {
   State<Real>& s = state_;
-  for (Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.damage, &s.opening, &s.extra}) archive.get_array_like(*field);
-  archive.get_array_like(s.joint_state), archive.get_array_like(s.break_time), archive.get_array_like(s.break_mode);
+  const auto clock = scratch_.clock;
+  s = make_state(plan_, model_, body_), scratch_ = make_scratch(plan_, model_, body_);
+  scratch_.clock = clock;
+  for (Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.extra}) archive.get_array_like(*field);
+  std::vector<int> followed;
+  archive.get_array(followed);
+  if (archive.failed() || !follow_again(followed)) return false;
+  for (Field<Real>* field : {&s.damage, &s.opening, &s.force}) archive.get_array_like(*field);
+  archive.get_array_like(s.break_time), archive.get_array_like(s.break_mode);
   archive.get_array(s.exposed), s.cracks_exposed = archive.get<unsigned char>();
   s.ledger = archive.get<Ledger>();
   if (archive.failed() || !sides_exist(s.exposed, plan_)) return false;

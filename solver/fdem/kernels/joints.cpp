@@ -1,6 +1,6 @@
 // Joints: traction over each edge from the opening between its triangles, with two Gauss points (law/joint.hpp). While nothing is damaged
 // the traction is p delta in every direction, and the forces at the ends are those of the consistent spring, p L / 6 (2 delta_a + delta_b):
-// no direction is needed. Damage arithmetic runs in those blocks alone where an end opens past the smaller onset, or D > 0.
+// no direction is needed. Joints that an end of opens past the smaller onset are followed from then on, in blocks of their own.
 #include "solver/fdem/kernels/lanes.hpp"
 
 namespace fracfarm::fdem::FRACFARM_KERNELS {
@@ -41,7 +41,7 @@ INLINE Point at_point(const Joint& law, const Vector& along, const Vector& openi
   return {answer.damage, {answer.normal * along.z + answer.shear * along.x, answer.shear * along.z - answer.normal * along.x}};
 }
 
-struct Followed {
+struct Answer {
   Ends force;
   Lanes damage_0, damage_1;
   Mask damaged, breaks;
@@ -49,7 +49,7 @@ struct Followed {
 
 // Forces of the left triangle at both ends, with damage. `along` is the unit tangent of the line midway.
 template <class Curve>
-INLINE Followed follow(const Joint& law, const Vector& along, Lanes length, const Ends& opening, Lanes damage_0, Lanes damage_1) {
+INLINE Answer follow_ends(const Joint& law, const Vector& along, Lanes length, const Ends& opening, Lanes damage_0, Lanes damage_1) {
   const Lanes w(near), x(far);
   const Point p = at_point<Curve>(law, along, {w * opening.ax + x * opening.bx, w * opening.az + x * opening.bz}, damage_0);
   const Point q = at_point<Curve>(law, along, {x * opening.ax + w * opening.bx, x * opening.az + w * opening.bz}, damage_1);
@@ -80,50 +80,16 @@ INLINE Joint wide(const law::Joint<Real>& joint) {
   return {joint.penalty, joint.per_onset_n, joint.per_onset_t, joint.per_rupture_n, joint.per_rupture_t};
 }
 
-// The opening one step earlier of joints that were springs then, from their force.
-INLINE Ends opening_of(const Ends& f, Lanes spring) {
-  const Lanes zero(Real(0)), one(Real(1)), two(Real(2));
-  const Lanes per = select(spring > zero, one / select(spring > zero, Lanes(Real(3)) * spring, one), zero);
-  return {per * (two * f.ax - f.bx), per * (two * f.az - f.bz), per * (two * f.bx - f.ax), per * (two * f.bz - f.az)};
-}
-
-struct Chunk {
-  LaneSums stored, fracture;
-};
-
-// The damage arithmetic of one register; replaces the springs' force where there is damage. The work that is gone in a step is
-// 1/2 (f0 delta1 - f1 delta0): the trapezoidal work less the growth of what is stored.
-template <class Curve>
-INLINE unsigned follow_part(const View& view, int b, int s, const Sides& u, const Ends& opening, Lanes spring, Ends& force, Lanes& gone) {
+INLINE Sides load_sides(const View& view, const JointPlaces<Real>& joints, int b, int s) {
   const Index joint = Index(b) * lanes + s * width;
-  const Joint law = wide(view.joint_laws[view.joint_law_of_block[b]]);
-  Real* damage = view.damage + Index(b) * 2 * lanes + s * width;
-  Real* kept = view.opening + Index(b) * 4 * lanes + s * width;
-  const Lanes damage_0 = load(damage), damage_1 = load(damage + lanes);
-  const Followed now = follow<Curve>(law, midline(view, b, s, u), load(view.length + joint), opening, damage_0, damage_1);
-  const int* slot_of = view.left_slot + joint;
-  const Lanes4 slot = load_rows(LANE_AT { return view.slots + slot_of[l]; });
-  const Ends before{slot.a, slot.b, slot.c, slot.d};
-  const bool followed = view.joint_state[b] & joint_followed;
-  const Ends earlier = followed ? load_ends(kept) : opening_of(before, spring);
-  force = choose(now.damaged, now.force, force);
-  const Lanes zero(Real(0)), half(Real(0.5));
-  gone = select(now.damaged, half * (dot(before, opening) - dot(force, earlier)), zero);
-  store(damage, now.damage_0), store(damage + lanes, now.damage_1);
-  store_ends(kept, opening);
-  return unsigned(any(now.damaged) ? joint_damaged : 0) | unsigned(any(now.breaks) ? joint_broke : 0);
-}
-
-INLINE Sides load_sides(const View& view, int b, int s) {
-  const Index joint = Index(b) * lanes + s * width;
-  const int *left = view.left_row + joint, *right = view.right_row + joint;
+  const int *left = joints.left_row + joint, *right = joints.right_row + joint;
   const Real* rows = view.rows;
   return {load_rows(LANE_AT { return rows + left[l]; }), load_rows(LANE_AT { return rows + right[l]; })};
 }
 
-INLINE void store_sides(const View& view, int b, int s, const Ends& f) {
+INLINE void store_sides(const View& view, const JointPlaces<Real>& joints, int b, int s, const Ends& f) {
   const Index joint = Index(b) * lanes + s * width;
-  const int *left = view.left_slot + joint, *right = view.right_slot + joint;
+  const int *left = joints.left_slot + joint, *right = joints.right_slot + joint;
   Real* slots = view.slots;
   store_rows(LANE_AT { return slots + left[l]; }, {f.ax, f.az, f.bx, f.bz});
   store_rows(LANE_AT { return slots + right[l]; }, {-f.bx, -f.bz, -f.ax, -f.az});
@@ -133,8 +99,9 @@ INLINE Ends opening_between(const Sides& u) {
   return {u.right.c - u.left.a, u.right.d - u.left.b, u.right.a - u.left.c, u.right.b - u.left.d};
 }
 
-INLINE Lanes spring_of(const View& view, const law::Joint<Real>& law, int b, int s) {
-  return Lanes(law.penalty * Real(1.0 / 6.0)) * load(view.length + Index(b) * lanes + s * width);
+INLINE Lanes spring_of(const View& view, const JointPlaces<Real>& joints, int b, int s) {
+  const law::Joint<Real>& law = view.joint_laws[joints.law_of_block[b]];
+  return Lanes(law.penalty * Real(1.0 / 6.0)) * load(joints.length + Index(b) * lanes + s * width);
 }
 
 INLINE Ends spring_force(Lanes spring, const Ends& o) {
@@ -142,62 +109,67 @@ INLINE Ends spring_force(Lanes spring, const Ends& o) {
   return {spring * (o.ax + x), spring * (o.az + z), spring * (o.bx + x), spring * (o.bz + z)};
 }
 
-INLINE void end_part(const View& view, int b, int s, const Ends& opening, const Ends& force, Chunk& sums) {
-  store_sides(view, b, s, force);
-  sums.stored.part[s] = sums.stored.part[s] + dot(force, opening);
+// One register of followed joints. The work that is gone in a step is 1/2 (f0 delta1 - f1 delta0): the trapezoidal work less the growth of
+// what is stored.
+template <class Curve>
+INLINE bool follow_part(const View& view, int b, int s, LaneSums& gone) {
+  const Joint law = wide(view.joint_laws[view.followed.law_of_block[b]]);
+  const Sides u = load_sides(view, view.followed, b, s);
+  const Ends opening = opening_between(u);
+  Real* damage = view.damage + Index(b) * 2 * lanes + s * width;
+  Real* opening_at = view.opening + Index(b) * 4 * lanes + s * width;
+  Real* force_at = view.force + Index(b) * 4 * lanes + s * width;
+  const Lanes length = load(view.followed.length + Index(b) * lanes + s * width), zero(Real(0)), half(Real(0.5));
+  const Answer now = follow_ends<Curve>(law, midline(view, b, s, u), length, opening, load(damage), load(damage + lanes));
+  const Ends force = choose(now.damaged, now.force, spring_force(spring_of(view, view.followed, b, s), opening));
+  const Lanes lost = half * (dot(load_ends(force_at), opening) - dot(force, load_ends(opening_at)));
+  gone.part[s] = gone.part[s] + select(now.damaged, lost, zero);
+  store(damage, now.damage_0), store(damage + lanes, now.damage_1);
+  store_ends(opening_at, opening), store_ends(force_at, force);
+  store_sides(view, view.followed, b, s, force);
+  return any(now.breaks);
 }
 
-// The block again, with damage. Apart from the springs' loop, which then keeps everything in registers.
 template <class Curve>
-[[gnu::noinline]] void follow_block(const View& view, int b, Chunk& sums) {
-  const law::Joint<Real>& law = view.joint_laws[view.joint_law_of_block[b]];
-  unsigned after = joint_followed | (view.joint_state[b] & joint_damaged);
-  for (int s = 0; s < parts; ++s) {
-    const Sides u = load_sides(view, b, s);
-    const Ends opening = opening_between(u);
-    const Lanes spring = spring_of(view, law, b, s);
-    Ends force = spring_force(spring, opening);
-    Lanes gone;
-    after |= follow_part<Curve>(view, b, s, u, opening, spring, force, gone);
-    sums.fracture.part[s] = sums.fracture.part[s] + gone;
-    end_part(view, b, s, opening, force, sums);
+INLINE double follow_with(const View& view, Blocks blocks) {
+  LaneSums gone;
+  for (int b = blocks.begin; b < blocks.end; ++b) {
+    bool breaks = false;
+    for (int s = 0; s < parts; ++s) breaks |= follow_part<Curve>(view, b, s, gone);
+    view.breaks[b] = breaks;
   }
-  view.joint_state[b] = static_cast<unsigned char>(after);
+  return gone.total();
 }
 
-// True where an end of a joint is open past the smaller onset, in whatever direction.
-INLINE bool is_stretched(const law::Joint<Real>& law, const Ends (&opening)[parts]) {
-  const Real steepest = law.per_onset_n > law.per_onset_t ? law.per_onset_n : law.per_onset_t;
-  Lanes furthest(Real(0));
-#pragma GCC unroll 4
-  for (const Ends& o : opening) furthest = larger(furthest, larger(o.ax * o.ax + o.az * o.az, o.bx * o.bx + o.bz * o.bz));
-  return any(furthest * Lanes(steepest * steepest) > Lanes(Real(1)));
-}
-
-template <class Curve>
-INLINE void join_block(const View& view, int b, Chunk& sums) {
-  if (view.always_follow || (view.joint_state[b] & joint_damaged)) return follow_block<Curve>(view, b, sums);
-  const law::Joint<Real>& law = view.joint_laws[view.joint_law_of_block[b]];
-  Ends opening[parts];
-#pragma GCC unroll 4
-  for (int s = 0; s < parts; ++s) opening[s] = opening_between(load_sides(view, b, s));
-  if (is_stretched(law, opening)) return follow_block<Curve>(view, b, sums);
-  view.joint_state[b] = 0;
-#pragma GCC unroll 4
-  for (int s = 0; s < parts; ++s) end_part(view, b, s, opening[s], spring_force(spring_of(view, law, b, s), opening[s]), sums);
-}
-
-template <class Curve>
-INLINE JointSums join_with(const View& view, Blocks blocks) {
-  Chunk sums;
-  for (int b = blocks.begin; b < blocks.end; ++b) join_block<Curve>(view, b, sums);
-  return {0.5 * sums.stored.total(), sums.fracture.total()};
-}
+INLINE Lanes furthest(const Ends& o) { return larger(o.ax * o.ax + o.az * o.az, o.bx * o.bx + o.bz * o.bz); }
 
 }  // namespace
 
-JointSums join(const View& view, Blocks blocks) {
-  return view.curve == Curve::munjiza ? join_with<law::Munjiza>(view, blocks) : join_with<law::LinearSoftening>(view, blocks);
+void join(const View& view, Blocks blocks) {
+  for (int b = blocks.begin; b < blocks.end; ++b) {
+    bool stretched = false;
+#pragma GCC unroll 4
+    for (int s = 0; s < parts; ++s) {
+      const Ends opening = opening_between(load_sides(view, view.springs, b, s));
+      store_sides(view, view.springs, b, s, spring_force(spring_of(view, view.springs, b, s), opening));
+      stretched |= any(furthest(opening) > load(view.reach + Index(b) * lanes + s * width));
+    }
+    view.stretched[b] = stretched;
+  }
+}
+
+double follow(const View& view, Blocks blocks) {
+  return view.curve == Curve::munjiza ? follow_with<law::Munjiza>(view, blocks) : follow_with<law::LinearSoftening>(view, blocks);
+}
+
+double stored(const View& view, Blocks blocks) {
+  LaneSums sums;
+  for (int b = blocks.begin; b < blocks.end; ++b)
+    for (int s = 0; s < parts; ++s) {
+      const Ends opening = opening_between(load_sides(view, view.springs, b, s));
+      sums.part[s] = sums.part[s] + dot(spring_force(spring_of(view, view.springs, b, s), opening), opening);
+    }
+  return 0.5 * sums.total();
 }
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS

@@ -7,12 +7,14 @@ using Real = FRACFARM_REAL;
 
 AdvanceSums advance(const View<Real>&, Blocks, Real dt);
 TriangleSums measure(const View<Real>&, Blocks, Real dt);
-JointSums join(const View<Real>&, Blocks);
+void join(const View<Real>&, Blocks);
+double follow(const View<Real>&, Blocks);
+double stored(const View<Real>&, Blocks);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
 extern const Kernels<Real> table;
-const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), advance, measure, join};
+const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), advance, measure, join, follow, stored};
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS
