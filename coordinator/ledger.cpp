@@ -21,6 +21,9 @@ Result<void> prepare(Database& database) {
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF; PRAGMA cache_size = "
       "-65536;"
       "PRAGMA temp_store = MEMORY;");
+  // Everything that the log holds goes to the database, written and synced anew: after a sync that failed the system may show pages that
+  // never reached the disk, and whatever is committed behind them would be lost with them.
+  database.script("PRAGMA wal_checkpoint(TRUNCATE)");
   if (Result<void> done = migrate(database); !done) return done;
   database.script("PRAGMA foreign_keys = ON");  // a migration rebuilds tables that others point at
   database.run("INSERT INTO meta VALUES('farm_id', ?1) ON CONFLICT DO NOTHING", random_id());
@@ -46,6 +49,11 @@ Result<Ledger> Ledger::open(const FarmPaths& paths, bool make, double patience_s
 Ledger Ledger::in_memory() {
   Database database = Database::open({});
   (void)prepare(database);
+  return Ledger(std::move(database), std::nullopt);
+}
+
+Result<Ledger> Ledger::over(Database database) {
+  if (Result<void> ready = prepare(database); !ready) return tl::unexpected(ready.error());
   return Ledger(std::move(database), std::nullopt);
 }
 
