@@ -1,5 +1,6 @@
 // CURVE keys of a farm, made on first use: DIR/keys (mode 0700) has <name>.key (the pair, mode 0600), server.pub, and allowed/<name>.pub
-// for everyone who may connect. Revoking a peer is removing its .pub; it is never made again beside an existing .key.
+// for everyone who may connect. Revoking a peer is removing its .pub, which ends its say at once, connected or not; it is never made again
+// beside an existing .key. Removing both gives it another pair at its next start.
 #pragma once
 
 #include <filesystem>

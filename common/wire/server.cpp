@@ -4,6 +4,7 @@
 #include <cmath>
 #include <zmq.hpp>
 
+#include "common/base/clock.hpp"
 #include "common/wire/socket.hpp"
 #include "common/wire/zap.hpp"
 
@@ -34,8 +35,19 @@ struct Server::Impl {
   ZapHandler zap;
   zmq::socket_t socket;
   ServerCounts counts;
+  Admission admission;
+  SystemClock clock;
 
-  explicit Impl(const std::filesystem::path& farm) : zap(context, farm), socket(context, zmq::socket_type::router) {}
+  explicit Impl(const std::filesystem::path& farm) : zap(context, farm), socket(context, zmq::socket_type::router), admission(farm) {}
+
+  // The name of a peer whose key is still good; a connection outlives the key that opened it.
+  std::string name_of(std::string_view user) {
+    if (user.size() <= user_key_length + 1) return {};
+    const std::string name(user.substr(0, user.size() - user_key_length - 1)), key(user.substr(user.size() - user_key_length));
+    if (admission.still_allowed(name, key, clock.monotonic_s())) return name;
+    ++counts.revoked_keys;
+    return {};
+  }
 
   // Takes one message off the socket, false where there is none. `incoming` stays without a peer where it was no message of ours.
   bool take(Incoming& incoming) {
@@ -44,7 +56,7 @@ struct Server::Impl {
     incoming = {};
     if (route.more() && socket.recv(body, zmq::recv_flags::dontwait)) {
       const char* peer = ::zmq_msg_gets(body.handle(), "User-Id");
-      if (!body.more() && peer != nullptr) incoming = {route.to_string(), peer, body.to_string()};
+      if (!body.more() && peer != nullptr) incoming = {route.to_string(), name_of(peer), body.to_string()};
       for (bool more = body.more(); more;) more = socket.recv(rest, zmq::recv_flags::dontwait) && rest.more();
     }
     if (incoming.peer.empty()) ++counts.odd_frames;

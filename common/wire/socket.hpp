@@ -27,6 +27,7 @@ struct ServerCounts {
   std::uint64_t odd_frames = 0;    // not one frame, or of an unauthenticated peer
   std::uint64_t unsendable = 0;    // replies to peers that were gone or did not read
   std::uint64_t unknown_keys = 0;  // refused handshakes
+  std::uint64_t revoked_keys = 0;  // messages of connections whose key was taken away or replaced since; among the odd ones
 };
 
 class Server {

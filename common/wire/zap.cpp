@@ -2,11 +2,8 @@
 
 #include <array>
 #include <chrono>
-#include <system_error>
 #include <vector>
 #include <zmq_addon.hpp>
-
-#include "common/wire/keys.hpp"
 
 namespace fracfarm::wire {
 namespace {
@@ -22,7 +19,7 @@ std::string z85(const zmq::message_t& key) {
 }  // namespace
 
 ZapHandler::ZapHandler(zmq::context_t& context, std::filesystem::path farm)
-    : farm_(std::move(farm)), socket_(context, zmq::socket_type::rep) {
+    : admission_(std::move(farm)), socket_(context, zmq::socket_type::rep) {
   socket_.set(zmq::sockopt::linger, 0);
   socket_.bind("inproc://zeromq.zap.01");
   thread_ = std::thread([this] { serve(); });
@@ -49,36 +46,20 @@ void ZapHandler::answer_one() {
   std::vector<zmq::message_t> frames;
   if (!zmq::recv_multipart(socket_, std::back_inserter(frames))) return;
   const std::string id = frames.size() > 1 ? frames[1].to_string() : "";
-  std::string name;
-  if (frames.size() == request_frames && frames[5].to_string_view() == "CURVE") name = name_of_key(z85(frames[6]));
+  std::string name, key;
+  if (frames.size() == request_frames && frames[5].to_string_view() == "CURVE") {
+    key = z85(frames[6]);
+    name = admission_.name_of_key(key);
+  }
+  const std::string user = name.empty() ? std::string() : user_id(name, key);
   if (name.empty()) ++refused_;
   const std::array<zmq::const_buffer, 6> reply{zmq::str_buffer("1.0"),
                                                zmq::buffer(id),
                                                name.empty() ? zmq::const_buffer("400", 3) : zmq::const_buffer("200", 3),
                                                name.empty() ? zmq::const_buffer("key not allowed", 15) : zmq::const_buffer("OK", 2),
-                                               zmq::buffer(name),
+                                               zmq::buffer(user),
                                                zmq::str_buffer("")};
   zmq::send_multipart(socket_, reply);
-}
-
-// A known key is believed while the folder is as it was; an unknown one is always looked up again (two changes within one tick of the
-// file system's clock leave the folder's time unchanged).
-std::string ZapHandler::name_of_key(const std::string& public_key) {
-  if (public_key.empty()) return {};
-  std::error_code error;
-  const auto changed = std::filesystem::last_write_time(farm_ / "keys" / "allowed", error);
-  auto found = names_.find(public_key);
-  if (error || changed != read_at_ || found == names_.end()) {
-    reload();
-    read_at_ = changed;
-    found = names_.find(public_key);
-  }
-  return found == names_.end() ? std::string() : found->second;
-}
-
-void ZapHandler::reload() {
-  names_.clear();
-  for (AllowedKey& key : allowed_keys(farm_)) names_.emplace(std::move(key.public_key), std::move(key.name));
 }
 
 }  // namespace fracfarm::wire

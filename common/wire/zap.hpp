@@ -5,12 +5,18 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <thread>
 #include <zmq.hpp>
 
+#include "common/wire/admission.hpp"
+
 namespace fracfarm::wire {
+
+// What a connection's messages carry as their user id: who it is, and by which key, so that a key which is taken away or replaced while the
+// connection lasts is known by every message.
+inline constexpr std::size_t user_key_length = 40;  // Z85
+inline std::string user_id(const std::string& name, const std::string& public_key) { return name + ' ' + public_key; }
 
 class ZapHandler {
  public:
@@ -26,13 +32,9 @@ class ZapHandler {
  private:
   void serve();
   void answer_one();
-  std::string name_of_key(const std::string& public_key);  // empty: not allowed
-  void reload();
 
-  std::filesystem::path farm_;
+  Admission admission_;
   zmq::socket_t socket_;
-  std::map<std::string, std::string> names_;  // public key (Z85) to name
-  std::filesystem::file_time_type read_at_{};
   std::atomic<bool> stop_{false};
   std::atomic<bool> alive_{true};
   std::atomic<std::uint64_t> refused_{0};
