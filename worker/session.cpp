@@ -36,7 +36,9 @@ double Session::next_tick(double now) const {
   double at = std::min(now + 1.0, give_up_at_);
   if (!asking_ && !welcomed_) at = std::min(at, greet_at_);
   if (!asking_ && welcomed_) {
-    at = std::min({at, beat_at_, std::max(ask_at_, claims_from_)});
+    at = std::min(at, beat_at_);
+    // A time to ask that is past was not used because no slot is free: its end will call.
+    if (const double ask = std::max(ask_at_, claims_from_); ask > now) at = std::min(at, ask);
     if (anything_to_report()) at = std::min(at, report_since_ + options_.report_delay_s);
   }
   return std::max(now + 0.005, at);

@@ -282,3 +282,13 @@ TEST_CASE("a worker that is refused again and again ends and says so") {
   }
   CHECK(bench.finished == exit_failed);
 }
+
+TEST_CASE("a worker whose slots are full sleeps until something happens, not a few milliseconds at a time") {
+  Bench bench;
+  bench.welcome_and_take_next();
+  bench.give({assignment(1), assignment(2)});
+  bench.now += 1.0;
+  bench.feed(Tick{});
+  REQUIRE(bench.posted.empty());
+  CHECK(bench.session.next_tick(bench.now) - bench.now > 0.5);
+}
