@@ -22,9 +22,11 @@ void CoordinatorProcess::open() {
   FaultDisk::use(world_.disk);
   ledger_.emplace(Ledger::over(Database::open(file)).value());
   if (ever_opened_) spoil_start(world_.settings.bug, ledger_->reading());
-  reactor_ = std::make_unique<Reactor>(*ledger_, ReactorSettings{build, lease_timeout_s / 6.0, lease_timeout_s, 5}, world_.instant());
+  reactor_ =
+      std::make_unique<Reactor>(*ledger_, ReactorSettings{build, lease_timeout_s / 6.0, lease_timeout_s, 512, 0.1, 60.0}, world_.instant());
   epoch_ = reactor_->epoch();
   ever_opened_ = true;
+  submitted_ = false;  // in this life
   changes_ = -1;
 }
 

@@ -11,24 +11,6 @@ namespace {
 
 constexpr std::size_t sector = 512;
 
-bool may_have(FaultDisk::Call call, Trouble trouble) {
-  using Call = FaultDisk::Call;
-  const bool puts = call == Call::write;
-  switch (trouble) {
-    case Trouble::none:
-      return false;
-    case Trouble::no_space:
-    case Trouble::short_write:
-    case Trouble::torn_page:
-      return puts;
-    case Trouble::io_error:
-    case Trouble::lost_writes:
-    case Trouble::killed:
-      break;
-  }
-  return true;
-}
-
 int code_of_error(FaultDisk::Call call) {
   using Call = FaultDisk::Call;
   return call == Call::read    ? SQLITE_IOERR_READ
@@ -43,6 +25,23 @@ int code_of_error(FaultDisk::Call call) {
 std::string name_of(Trouble trouble) {
   static constexpr const char* names[]{"none", "ENOSPC", "EIO", "short write", "torn page", "lost unsynced writes", "SIGKILL"};
   return names[static_cast<int>(trouble)];
+}
+
+bool FaultDisk::may_have(Call call, Trouble trouble) {
+  const bool puts = call == Call::write;
+  switch (trouble) {
+    case Trouble::none:
+      return false;
+    case Trouble::no_space:
+    case Trouble::short_write:
+    case Trouble::torn_page:
+      return puts;
+    case Trouble::io_error:
+    case Trouble::lost_writes:
+    case Trouble::killed:
+      break;
+  }
+  return true;
 }
 
 Trouble FaultDisk::turn(Call call) {
@@ -81,7 +80,6 @@ void FaultDisk::cut_power() {
 
 void FaultDisk::revive() {
   dead_ = false;
-  forget_plan();
   for (auto& [name, file] : files_) file->shared.clear();
   removed_.clear();
 }

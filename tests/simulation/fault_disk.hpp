@@ -24,6 +24,7 @@ class FaultDisk {
 
   // SQLite opens its files here from now on, in this process; one disk at a time.
   static void use(FaultDisk& disk);
+  static bool may_have(Call call, Trouble trouble);
 
   // The call after `calls` more ends so; a trouble that the call cannot have waits for one that can. torn_page, lost_writes and killed end
   // the process that uses the disk: until revive(), no call succeeds.

@@ -7,6 +7,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
+#include "tests/simulation/disk_matrix.hpp"
 #include "tests/simulation/world.hpp"
 
 using namespace fracfarm;
@@ -18,6 +19,7 @@ struct Options {
   std::uint64_t first = 1, seeds = 1000;
   std::string bug;
   bool tell = false;
+  std::uint64_t disk_every = 0;
 };
 
 void tell(std::uint64_t seed, const World& world, const std::string& broken) {
@@ -37,6 +39,7 @@ int simulate(const Options& options, const Settings& settings) {
     const std::string broken = world.run();
     simulated_s += world.simulated_s();
     if (options.tell) tell(seed, world, broken);
+    if (options.tell) std::fflush(stdout);
     if (!broken.empty()) {
       ++broken_seeds;
       fmt::print("seed {}: {}\n  replay it with: fracfarm-simulate --seed {}{} --tell\n", seed, broken, seed,
@@ -53,6 +56,16 @@ int simulate(const Options& options, const Settings& settings) {
   return broken_seeds == 0 ? 0 : 1;
 }
 
+int disk_troubles(std::uint64_t every) {
+  std::uint64_t violations = 0;
+  for (const MatrixRow& row : disk_matrix(every, [](const MatrixRow& it) {
+         fmt::print("{}\n", text_of(it));
+         std::fflush(stdout);
+       }))
+    violations += row.violations;
+  return violations == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,9 +76,11 @@ int main(int argc, char** argv) {
   app.add_option("--first", options.first, "the first seed")->capture_default_str();
   auto* one = app.add_option("--seed", options.first, "this one alone");
   app.add_option("--bug", options.bug, "put a classic error back in (tests/simulation/known_bugs.hpp)");
+  app.add_option("--disk", options.disk_every, "instead: trouble at every n-th call of the disk in a campaign; 1 is every call");
   app.add_flag("--tell", options.tell, "a line for each seed; everything that happens where it is one");
   CLI11_PARSE(app, argc, argv);
   if (one->count() > 0) options.seeds = 1;
+  if (options.disk_every > 0) return disk_troubles(options.disk_every);
   Settings settings;
   settings.tell = options.tell && options.seeds == 1;
   if (!options.bug.empty()) {

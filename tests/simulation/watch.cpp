@@ -26,8 +26,9 @@ void Watch::asked(const std::string& peer, const wire::Request& request) {
 void Watch::answered(const std::string& peer, const wire::RequestEnvelope& asked, const wire::Reply& reply, std::uint64_t epoch, double now,
                      Database& ledger) {
   if (const auto* jobs = std::get_if<wire::Jobs>(&reply)) {
+    const bool said_again = served_.contains(fmt::format("{} {} {}", peer, asked.request_id, epoch));
     look_at_assignments(peer, asked, *jobs, epoch, now, ledger);
-    if (const auto* next = std::get_if<wire::Next>(&asked.request)) look_at_receipts(*next, *jobs, ledger);
+    if (const auto* next = std::get_if<wire::Next>(&asked.request); next && !said_again) look_at_receipts(*next, *jobs, ledger);
   }
   const auto* hello = std::get_if<wire::Hello>(&asked.request);
   const auto* beat = std::get_if<wire::Beat>(&asked.request);
@@ -52,10 +53,12 @@ void Watch::look_at_assignments(const std::string& peer, const wire::RequestEnve
   const auto* next = std::get_if<wire::Next>(&asked.request);
   for (const wire::Assignment& it : jobs.assignments) {
     const LeaseKey lease{it.lease.epoch, it.lease.counter};
-    if (!given_.try_emplace(lease, Given{it.key, peer, asked.request_id / requests_of_a_life, it.attempt, now, false}).second)
-      return broken(fmt::format("I4: lease {}.{} was given twice", lease.first, lease.second));
-    tries_[{it.key, it.attempt}] = lease;
     const std::optional<Job> job = job_by_key(ledger, it.key);
+    const bool again = job && job->state == State::done;
+    const Given made{it.key, peer, asked.request_id / requests_of_a_life, it.attempt, now, false, again};
+    if (!given_.try_emplace(lease, made).second) return broken(fmt::format("I4: lease {}.{} was given twice", lease.first, lease.second));
+    if (again) continue;
+    tries_[{it.key, it.attempt}] = lease;
     if (!job || !(job->lease == it.lease)) return broken("I4: an assignment of a job that the ledger does not lease so");
     std::uint64_t results = 0;
     for (const auto& [job_class, learned] : learned_times(ledger)) results += learned.n;
@@ -86,7 +89,7 @@ void Watch::look_at_receipts(const wire::Next& next, const wire::Jobs& jobs, Dat
   for (std::size_t at = 0; at < next.failed.size(); ++at) {
     const wire::Failed& failed = next.failed[at];
     const Given* lease = given(failed.lease);
-    if (jobs.receipts[next.completed.size() + at] != wire::Receipt::accepted || !lease) continue;
+    if (jobs.receipts[next.completed.size() + at] != wire::Receipt::accepted || !lease || lease->again) continue;
     const std::vector<AttemptRow> history = attempts_of(ledger, job_by_key(ledger, failed.key)->id);
     if (history.empty() || history.back().attempt != lease->attempt)
       return broken(fmt::format("I4: a fault of try {} of a job ended another try of it", lease->attempt));
@@ -100,6 +103,8 @@ void Watch::sent(const std::string& peer, const wire::RequestEnvelope& asked, co
   if (!next || !jobs) return;
   for (std::size_t at = 0; at < std::min(next->completed.size(), jobs->receipts.size()); ++at) {
     const wire::Completion& told = next->completed[at];
+    const Given* lease = given(told.lease);
+    if (lease && lease->again) continue;
     if (jobs->receipts[at] == wire::Receipt::accepted) promised_[told.key] = told.sha256;
     if (jobs->receipts[at] == wire::Receipt::duplicate) promised_.try_emplace(told.key, "");
   }

@@ -60,6 +60,7 @@ class Watch {
     int attempt = 0;
     double heard_at = 0.0;  // when its holder last named it
     bool returned = false;  // its holder gave it back
+    bool again = false;     // of a job that is done: to compare
   };
   void look_at_assignments(const std::string& peer, const wire::RequestEnvelope& asked, const wire::Jobs& jobs, std::uint64_t epoch,
                            double now, Database& ledger);

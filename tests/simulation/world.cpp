@@ -135,7 +135,8 @@ void World::stranger_acts() {
 
 void World::person_acts() {
   const std::int64_t job = random.integer(1, 2 * settings.patterns);
-  const std::string verb = chance(0.5) ? "cancel" : "retry";
+  static constexpr const char* verbs[]{"cancel", "retry", "retry", "hold", "release", "release"};
+  const std::string verb = verbs[pick(std::size(verbs))];
   coordinator_->hear({person, "", wire::encode(wire::RequestEnvelope{0, wire::Ask{verb, nlohmann::json{{"jobs", {job}}}.dump()}})});
   trace(verb);
 }
