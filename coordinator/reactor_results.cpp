@@ -46,6 +46,19 @@ bool same_physics(const Outcome& a, const wire::Completion& b) {
 // A wall clock ends a run where it happens to be: no reproducible end.
 bool ended_by_clock(Verdict verdict, const std::string& rule) { return verdict == Verdict::censored && rule == "wall_clock"; }
 
+// By this lease to compute it again, or at any time to do it: a lease that ended meanwhile does not spoil a result, a stranger's word does.
+bool was_given(Database& ledger, const std::string& peer, const Job& job, const wire::LeaseId& lease) {
+  const auto is_peer = [&](std::int64_t worker) {
+    const std::optional<WorkerRow> row = worker_row(ledger, worker);
+    return row && row->peer == peer;
+  };
+  if (job.worker != 0 && is_peer(job.worker)) return true;
+  for (const AttemptRow& row : attempts_of(ledger, job.id))
+    if (row.peer == peer) return true;
+  const std::vector<RecheckRow> again = rechecks_of(ledger, job.id);
+  return std::any_of(again.begin(), again.end(), [&](const RecheckRow& row) { return row.lease == lease && is_peer(row.worker); });
+}
+
 }  // namespace
 
 wire::Receipt Reactor::on_duplicate(const Job& job, const wire::Completion& completion, Instant now) {
@@ -70,6 +83,10 @@ wire::Receipt Reactor::on_duplicate(const Job& job, const wire::Completion& comp
 wire::Receipt Reactor::on_completion(const std::string& peer, Session& session, const wire::Completion& completion, Instant now) {
   const std::optional<Job> job = job_by_key(ledger_.reading(), completion.key);
   if (!job || completion.lease.epoch > epoch_ || completion.lease.epoch == 0) return wire::Receipt::refused;
+  if (!was_given(ledger_.reading(), peer, *job, completion.lease)) {
+    note(fmt::format("{} says that it did job {}, which it was never given: refused", peer, job->id));
+    return wire::Receipt::refused;
+  }
   const std::optional<RecheckRow> recheck = job->state == State::done ? recheck_of(completion.lease) : std::nullopt;
   const bool current = holds(peer, completion.lease, *job);
   if (const std::string wrong = wrong_with(completion); !wrong.empty()) {
