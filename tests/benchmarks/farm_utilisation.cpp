@@ -241,7 +241,7 @@ void short_jobs(Options options, Table& rows) {
 }
 
 void limits(Options options, Table& rows) {
-  options.workers = 16;
+  options.workers = 4;
   options.mean_s = 30.0;
   options.spread = 0.5;
   options.allocation_s = 4.0 * 3600.0;

@@ -112,7 +112,7 @@ void ask_rebuild(const Store& store, const std::string& bytes, const fs::path& f
     const auto own =
         std::find_if(store.stored.begin(), store.stored.end(), [&](const test::Stored& it) { return it.place.key + ".h5" == entry.name; });
     if (own != store.stored.end() && store.bytes.compare(own->place.offset, own->place.length, content) == 0) continue;
-    const Result<cli::FoundRecord> found = cli::judge_entry(content, entry.name);
+    const Result<FoundRecord> found = cli::judge_entry(content, entry.name);
     if (!found) {
       ++tally.refused;
       continue;
