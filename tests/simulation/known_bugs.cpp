@@ -13,12 +13,6 @@ void overwrite(const wire::Completion& completion, Ledger& ledger) {
   ledger.reading().run("UPDATE jobs SET sha256 = ?2 WHERE id = ?1", job->id, Blob{digest});
 }
 
-// Whoever says that a job failed is believed, whatever lease it names.
-void take_current_lease(wire::Failed& failed, Ledger& ledger) {
-  const std::optional<Job> job = job_by_key(ledger.reading(), failed.key);
-  if (job && job->state == State::leased) failed.lease = job->lease;
-}
-
 void count_planned_stops(wire::Next& next, Ledger& ledger) {
   for (const wire::LeaseId& lease : next.returned)
     if (const std::optional<Job> job = job_by_lease(ledger.reading(), lease))
@@ -41,8 +35,6 @@ void spoil_request(KnownBug bug, wire::RequestEnvelope& envelope, Ledger& ledger
   if (!next) return;
   if (bug == KnownBug::result_overwritten)
     for (const wire::Completion& completion : next->completed) overwrite(completion, ledger);
-  if (bug == KnownBug::stale_fault_accepted)
-    for (wire::Failed& failed : next->failed) take_current_lease(failed, ledger);
   if (bug == KnownBug::planned_stop_counted) count_planned_stops(*next, ledger);
 }
 

@@ -16,7 +16,6 @@ enum class KnownBug {
   acknowledge_before_commit,
   epoch_not_raised,
   identity_by_routing_id,
-  existence_only_resume,
   retry_after_failed_sync,
   counter_drift,
   result_overwritten,
@@ -25,7 +24,6 @@ enum class KnownBug {
   lost_wakeup,
   repeated_claim_served_again,
   beats_not_heard,
-  stale_fault_accepted,
   report_before_sync,
   restart_forgets_leases,
 };
@@ -35,11 +33,10 @@ struct KnownBugRow {
   std::string_view name;
   std::string_view breaks;  // the invariant that must be the first to fall
 };
-inline constexpr std::array<KnownBugRow, 15> known_bugs{{
+inline constexpr std::array<KnownBugRow, 13> known_bugs{{
     {KnownBug::acknowledge_before_commit, "acknowledge_before_commit", "I2"},
     {KnownBug::epoch_not_raised, "epoch_not_raised", "I4"},
     {KnownBug::identity_by_routing_id, "identity_by_routing_id", "I4"},
-    {KnownBug::existence_only_resume, "existence_only_resume", "I3"},
     {KnownBug::retry_after_failed_sync, "retry_after_failed_sync", "I2"},
     {KnownBug::counter_drift, "counter_drift", "I5"},
     {KnownBug::result_overwritten, "result_overwritten", "I1"},
@@ -48,7 +45,6 @@ inline constexpr std::array<KnownBugRow, 15> known_bugs{{
     {KnownBug::lost_wakeup, "lost_wakeup", "I8"},
     {KnownBug::repeated_claim_served_again, "repeated_claim_served_again", "I4"},
     {KnownBug::beats_not_heard, "beats_not_heard", "I4"},
-    {KnownBug::stale_fault_accepted, "stale_fault_accepted", "I4"},
     {KnownBug::report_before_sync, "report_before_sync", "I3"},
     {KnownBug::restart_forgets_leases, "restart_forgets_leases", "I4"},
 }};

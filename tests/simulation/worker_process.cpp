@@ -48,9 +48,6 @@ void WorkerProcess::start() {
   options.memory_bytes = 1u << 30;
   if (has_end_) options.end_at = own_clock_s() + world_.random.uniform(60.0, 5000.0);
   options.unacknowledged = outbox_;
-  if (world_.settings.bug == KnownBug::existence_only_resume)
-    for (const Stored& it : shard_)
-      if (!it.completion.key.empty()) options.unacknowledged.push_back(it.completion);
   session_.emplace(options);
   request_id_ = life_ * requests_of_a_life;
   epoch_seen_ = world_.epoch();
