@@ -6,10 +6,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/robustness/accepted_mesh.hpp"
+
 namespace fracfarm::robustness {
 namespace {
 
 const GridLayout& grid_of(const RunResult& r) { return std::get<GridLayout>(r.layout); }
+
+bool on_a_mesh(const RunResult& r) { return std::holds_alternative<MeshLayout>(r.layout); }
 
 constexpr double ledger_limit = 0.02;
 constexpr double rounding = 1e-9;  // of sums over a run
@@ -244,12 +248,13 @@ constexpr AcceptanceRule table[]{
 std::span<const AcceptanceRule> acceptance_rules() { return table; }
 
 std::string broken_rule(const Scene& scene, const RunResult& result) {
-  for (const AcceptanceRule& rule : table)
+  for (const AcceptanceRule& rule : on_a_mesh(result) ? mesh_acceptance_rules() : acceptance_rules())
     if (std::string words = rule.broken(scene, result); !words.empty()) return fmt::format("{}: {}", rule.name, words);
   return {};
 }
 
 double ledger_share(const RunResult& result) {
+  if (on_a_mesh(result)) return mesh_ledger_share(result);
   const Ledger ledger = ledger_of(result);
   return ledger.scale > 0.0 ? ledger.residual / ledger.scale : 0.0;
 }

@@ -14,7 +14,7 @@ struct AcceptanceRule {
   std::string (*broken)(const Scene& scene, const RunResult& result);  // in words; empty where it holds
 };
 
-std::span<const AcceptanceRule> acceptance_rules();
+std::span<const AcceptanceRule> acceptance_rules();  // of runs on a grid; accepted_mesh.hpp has those of a mesh
 
 // The first broken rule, "name: words"; empty where all hold.
 std::string broken_rule(const Scene& scene, const RunResult& result);

@@ -21,6 +21,7 @@ namespace {
 struct Options {
   std::uint64_t runs = 10'000, seed = 1, first = 0;
   std::optional<std::uint64_t> only;
+  Method method = Method::phase_field;
   int jobs = 1, validate_every = 10;
   double limit_s = 20.0;
   std::filesystem::path keep = "hostile-scenes";
@@ -28,8 +29,12 @@ struct Options {
 };
 
 Trial trial_of(const Options& options, std::uint64_t index, const std::filesystem::path& scratch) {
-  return {options.seed, index, options.limit_s,
-          options.validate_every > 0 && index % static_cast<std::uint64_t>(options.validate_every) == 0, scratch};
+  return {options.seed,
+          index,
+          options.method,
+          options.limit_s,
+          options.validate_every > 0 && index % static_cast<std::uint64_t>(options.validate_every) == 0,
+          scratch};
 }
 
 std::filesystem::path make_scratch() {
@@ -40,7 +45,8 @@ std::filesystem::path make_scratch() {
 
 void keep_scene(const Options& options, std::uint64_t index) {
   std::filesystem::create_directories(options.keep);
-  std::ofstream(options.keep / fmt::format("seed-{}-run-{}.json", options.seed, index)) << hostile_scene(options.seed, index).text;
+  std::ofstream(options.keep / fmt::format("seed-{}-run-{}.json", options.seed, index))
+      << hostile_scene(options.seed, index, options.method).text;
 }
 
 class Progress {
@@ -73,7 +79,7 @@ Tally run_all(const Options& options, const std::filesystem::path& scratch) {
       [&](std::uint64_t index) { return to_line(outcome_of(trial_of(options, index, scratch))); },
       [&](const std::string& line) { note(from_line(line)); },
       [&](std::uint64_t index, const std::string& why) {
-        note({.index = index, .twists = hostile_scene(options.seed, index).twists, .end = End::violation, .why = why});
+        note({.index = index, .twists = hostile_scene(options.seed, index, options.method).twists, .end = End::violation, .why = why});
       });
   return tally;
 }
@@ -82,7 +88,7 @@ Tally run_all(const Options& options, const std::filesystem::path& scratch) {
 int replay(const Options& options, const std::filesystem::path& scratch) {
   Trial trial = trial_of(options, *options.only, scratch);
   trial.validate = options.validate_every > 0;
-  const HostileScene scene = hostile_scene(trial.seed, trial.index);
+  const HostileScene scene = hostile_scene(trial.seed, trial.index, trial.method);
   fmt::print("{}\n", scene.text);
   const Outcome outcome = outcome_of(trial);
   fmt::print(stderr, "{} ({}): {}; {} steps, {}\n", end_names[static_cast<int>(outcome.end)], outcome.twists, outcome.why, outcome.steps,
@@ -114,6 +120,8 @@ int main(int argc, char** argv) {
   CLI::App app("Random and hostile scenes through parser, solver and record: each must end as a scene may end.", "fracfarm-hostile");
   app.add_option("--runs", options.runs, "How many scenes")->capture_default_str();
   app.add_option("--seed", options.seed, "Of the scenes")->capture_default_str();
+  std::string method = "phase_field";
+  app.add_option("--method", method, "Of the scenes")->check(CLI::IsMember({"phase_field", "fdem"}))->capture_default_str();
   app.add_option("--first", options.first, "Number of the first scene")->capture_default_str();
   app.add_option("--only", options.only, "Print this scene, run it in this process and say how it ended");
   app.add_option("--jobs", options.jobs, "Child processes at once")->check(CLI::Range(1, 1024))->capture_default_str();
@@ -128,5 +136,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? fracfarm::exit_ok : fracfarm::exit_bad_input;
   }
+  options.method = method == "fdem" ? fracfarm::Method::fdem : fracfarm::Method::phase_field;
   return fracfarm::robustness::run(options);
 }

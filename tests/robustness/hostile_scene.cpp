@@ -40,25 +40,54 @@ json sound_scene(Draw& draw) {
   return scene;
 }
 
+// A body of 10 to 30 elements across, on which a run takes a tenth of a second.
+json sound_mesh_scene(Draw& draw) {
+  static constexpr const char* materials[]{"pbx", "pbx5", "shale", "tungsten"};
+  const double h = 0.003, width = draw.uniform(10.0, 30.0) * h, height = draw.chance(0.5) ? width : draw.uniform(10.0, 30.0) * h;
+  const double velocity = draw.log_uniform(0.5, 20.0), horizon = draw.uniform(2e-5, 1.5e-4);
+  const json plate{{"normal_velocity", velocity}, {"tangential", "fixed"}, {"ramp", draw.log_uniform(1e-6, 1e-4)}};
+  json scene{{"schema", "fracfarm.scene/1"},
+             {"method", "fdem"},
+             {"domain", {{"width", width}, {"height", height}}},
+             {"material", draw.pick(materials)},
+             {"cracks", sound_cracks(draw, width, height)},
+             {"loads", {{"top", plate}, {"bottom", plate}}},
+             {"time", {{"horizon", horizon}, {"frame_interval", horizon / 4}}},
+             {"fdem", {{"element_size", h}}}};
+  if (draw.chance(0.3)) scene["loads"].update({{"left", plate}, {"right", plate}});
+  return scene;
+}
+
+using Table = std::span<const Twist> (*)();
+
 // Most scenes are bent within the grammar, so that they are solved; the rest is what a parser must refuse.
 std::span<const Twist> family(Draw& draw) {
-  using Table = std::span<const Twist> (*)();
   static constexpr Table families[]{crack_twists,    crack_twists,    crack_twists,  crack_twists,  grid_twists,   grid_twists,
                                     grid_twists,     grid_twists,     load_twists,   load_twists,   load_twists,   load_twists,
                                     load_twists,     load_twists,     option_twists, option_twists, option_twists, material_twists,
                                     material_twists, material_twists, value_twists};
   return draw.pick(families)();
 }
+std::span<const Twist> mesh_family(Draw& draw) {
+  static constexpr Table families[]{crack_twists, crack_twists, crack_twists, mesh_twists, mesh_twists, mesh_twists,
+                                    mesh_twists,  mesh_twists,  load_twists,  load_twists, load_twists, value_twists};
+  return draw.pick(families)();
+}
 
 }  // namespace
 
-HostileScene hostile_scene(std::uint64_t seed, std::uint64_t index) {
+HostileScene hostile_scene(std::uint64_t seed, std::uint64_t index, Method method) {
   Draw draw(seed, index);
-  json scene = sound_scene(draw);
+  const bool mesh = method == Method::fdem;
+  json scene = mesh ? sound_mesh_scene(draw) : sound_scene(draw);
   HostileScene made;
   for (int k = draw.integer(1, 4); k > 0; --k) {
-    const Twist& twist = draw.pick(family(draw));
-    twist.bend(scene, draw);
+    const Twist& twist = draw.pick(mesh ? mesh_family(draw) : family(draw));
+    try {
+      twist.bend(scene, draw);
+    } catch (const json::exception&) {
+      continue;  // an earlier twist left nothing there to bend
+    }
     made.twists += (made.twists.empty() ? "" : "+") + std::string(twist.name);
   }
   made.text = scene.dump(1, ' ', false, json::error_handler_t::replace);

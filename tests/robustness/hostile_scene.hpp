@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "common/scene/scene.hpp"
+
 namespace fracfarm::robustness {
 
 struct HostileScene {
@@ -12,6 +14,6 @@ struct HostileScene {
   std::string twists;  // names, joined by +
 };
 
-HostileScene hostile_scene(std::uint64_t seed, std::uint64_t index);
+HostileScene hostile_scene(std::uint64_t seed, std::uint64_t index, Method method = Method::phase_field);
 
 }  // namespace fracfarm::robustness

@@ -40,6 +40,7 @@ Outcome judge_refusal(const Problems& problems) {
 // Evidence: the step, the time and what was wrong.
 Outcome judge_error(const Error& error) {
   static const std::regex evidence("at step [0-9]+, [-+0-9.e]+ s");
+  if (error.fault == Fault::bad_request) return ended(End::rejected, error.message);  // a mesh file that is not there
   if (error.fault != Fault::solver_numeric) return violation(fmt::format("{}: {}", fault_row(error.fault).name, error.message));
   if (!std::regex_search(error.message, evidence)) return violation("no step and time in the evidence: " + error.message);
   return ended(End::numeric, error.message);
@@ -71,14 +72,24 @@ std::string broken_record(const Scene& scene, const Trial& trial) {
 
 RunControl control_of(const Scene& scene, const Trial& trial) {
   RunControl control;
-  const double nodes = (scene.phase_field.cells_x + 1.0) * (scene.phase_field.cells_z + 1.0);
-  const bool implicit = scene.phase_field.integrator != Integrator::explicit_central;
+  const double nodes = scene.method == Method::fdem
+                           ? 2.31 * scene.width * scene.height / (scene.fdem.element_size * scene.fdem.element_size)
+                           : (scene.phase_field.cells_x + 1.0) * (scene.phase_field.cells_z + 1.0);
+  const bool implicit = scene.method == Method::phase_field && scene.phase_field.integrator != Integrator::explicit_central;
   control.step_budget = std::max(implicit ? 10LL : 100LL, std::llround((implicit ? 0.01 : 1.0) * node_steps / nodes));
   control.wall_budget_s = 0.5 * trial.limit_s;
   return control;
 }
 
+// A mesh that the gate refused: the reason, and nothing else.
+Outcome judge_rejection(const RunResult& result) {
+  if (result.judgement.rule.empty()) return violation("rejected without a reason");
+  if (result.series.rows() > 0 || result.judgement.time_to_failure) return violation("rejected, with a result");
+  return ended(End::rejected, "mesh: " + result.judgement.rule);
+}
+
 Outcome judge_result(const Scene& scene, const RunResult& result, const Trial& trial) {
+  if (scene.method == Method::fdem && result.judgement.verdict == Verdict::rejected) return judge_rejection(result);
   Outcome outcome = ended(result.judgement.verdict == Verdict::failed ? End::failed : End::censored, result.judgement.rule);
   if (const std::string broken = broken_rule(scene, result); !broken.empty()) outcome = violation(broken);
   outcome.steps = result.steps;
@@ -118,7 +129,7 @@ Outcome outcome_of_text(const std::string& text, const Trial& trial) {
 }
 
 Outcome outcome_of(const Trial& trial) {
-  const HostileScene scene = hostile_scene(trial.seed, trial.index);
+  const HostileScene scene = hostile_scene(trial.seed, trial.index, trial.method);
   Outcome outcome = outcome_of_text(scene.text, trial);
   outcome.twists = scene.twists;
   return outcome;

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string>
 
+#include "common/scene/scene.hpp"
+
 namespace fracfarm::robustness {
 
 enum class End { rejected, failed, censored, numeric, violation };
@@ -25,6 +27,7 @@ struct Outcome {
 struct Trial {
   std::uint64_t seed = 1;
   std::uint64_t index = 0;
+  Method method = Method::phase_field;
   double limit_s = 20.0;          // wall clock; a run ends itself at half of it
   bool validate = false;          // write the record and validate it
   std::filesystem::path scratch;  // folder for that record

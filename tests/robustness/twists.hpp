@@ -20,6 +20,7 @@ std::span<const Twist> grid_twists();      // domain, cells, layers
 std::span<const Twist> material_twists();  // constants and lengths
 std::span<const Twist> load_twists();      // loads, initial fields, times
 std::span<const Twist> option_twists();    // words of the phase_field block
+std::span<const Twist> mesh_twists();      // FDEM: slivers, settings, layers, bodies
 std::span<const Twist> value_twists();     // one value replaced by what should not stand there
 
 struct TextTwist {

@@ -16,6 +16,8 @@ Box box_of(const json& scene) {
   Box box{number_at(scene, "/domain/width"), number_at(scene, "/domain/height"), 0, 0, 1, 1};
   box.across = std::max(1, static_cast<int>(number_at(scene, "/phase_field/cells/0")));
   box.up = std::max(1, static_cast<int>(number_at(scene, "/phase_field/cells/1")));
+  if (const double h = number_at(scene, "/fdem/element_size"); h > 0.0 && std::max(box.width, box.height) < 1e3 * h)
+    box.across = std::max(1, static_cast<int>(box.width / h)), box.up = std::max(1, static_cast<int>(box.height / h));
   box.hx = box.width / box.across, box.hz = box.height / box.up;
   return box;
 }

@@ -59,7 +59,7 @@ std::vector<Row> mesh_size(Desk& desk) {
     const auto shares = studies::directions_by(runs[k], runs[k].last_time);
     rows.push_back(report(fmt::format("h {} mm: broken length within 15° of across the pull", 1e3 * sizes[k]), "%", 100.0 * shares[0]));
   }
-  desk.add({"fdem-mesh-size", "The same cracks on three meshes (figure 12 of the seed paper).", draw(runs)});
+  desk.add({"fdem_mesh_size", "The same cracks on three meshes (figure 12 of the seed paper).", draw(runs)});
   return rows;
 }
 

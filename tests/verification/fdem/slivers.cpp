@@ -75,7 +75,7 @@ Injected inject_files(int count) {
     studies::squeeze(mesh, allowed * std::pow(10.0, -0.02 - 0.3 * k));
     const fdem::MeshResult read = fdem::read_msh(fdem::write_msh(mesh), choice);
     (read ? counts.made : counts.refused) += 1;
-    counts.wrong += read.has_value() || read.error().find("height") == std::string::npos;
+    counts.wrong += read.has_value() || read.error().find("mm high") == std::string::npos;
   }
   return counts;
 }
