@@ -39,9 +39,9 @@ std::vector<std::array<double, 2>> rings(double radius, double element_size, Ran
 }
 
 constexpr double radius = 0.025, h = 0.00125;  // m
-constexpr double half_angle = 6.0;             // degrees, of a jaw
-constexpr double speed = 0.05, rise = 2e-5;    // m/s, of each jaw; s
-const Cohesion strength{0.6, 5e6, 25e6, 8.0, 80.0};
+constexpr double half_angle = 8.0;             // degrees, of a jaw
+constexpr double speed = 0.05, rise = 5e-5;    // m/s, of each jaw; s
+const Cohesion strength{0.6, 5e6, 60e6, 3.0, 150.0};
 const Material stone = cohesive(2500.0, 20e9, 0.25, strength);
 
 std::vector<fdem::Corner> jaw(const TriangleMesh& mesh, bool top) {
@@ -55,7 +55,7 @@ std::vector<fdem::Corner> jaw(const TriangleMesh& mesh, bool top) {
 struct Pressed {
   double peak = 0.0;        // N/m
   double half_width = 0.0;  // m, of a jaw
-  double kinetic = 0.0;     // over the work, at the peak
+  double kinetic = 0.0;     // over the work, when nine tenths of the peak are reached: at the peak the crack runs already
   double crack = 0.0;       // share of the diameter between the jaws along which joints near the middle line are broken, at the end
   TriangleMesh mesh;
   std::vector<float> damage;
@@ -85,7 +85,6 @@ Pressed press(Desk& desk, std::uint64_t seed) {
           std::abs(
               body.mesh.nodes[static_cast<Index>(body.mesh.triangles[static_cast<Index>(corner / 3)][static_cast<Index>(corner % 3)])][0] -
               radius));
-    body.told.push_back(held(corners, Axis::x));
     body.told.push_back({std::move(corners), Axis::z, [top](double t) { return (top ? -speed : speed) * std::clamp(t / rise, 0.0, 1.0); },
                          top ? Side::top : Side::bottom});
   }
@@ -95,16 +94,19 @@ Pressed press(Desk& desk, std::uint64_t seed) {
   Run<float> run(std::move(body), settings);
   if (!run.start()) return out;
   out.curve.name = fmt::format("mesh {}", seed), out.curve.colour = palette[(seed - 1) % std::size(palette)];
+  std::vector<double> kinetic;
   constexpr double limit = 2e-3;
   while (run.time() < limit) {
     run.steps(50);
     const SampleRow row = run.sample();
     const double force = -0.5 * (row.reaction[static_cast<Index>(Side::top)] + row.reaction[static_cast<Index>(Side::bottom)]);
-    if (force > out.peak) out.peak = force, out.kinetic = row.kinetic_energy / row.external_work;
+    out.peak = std::max(out.peak, force), kinetic.push_back(row.kinetic_energy / row.external_work);
     out.curve.x.push_back(run.time()), out.curve.y.push_back(force);
     desk.progress(fmt::format("mesh {}", seed), run.time() / limit);
     if (out.peak > 1e4 && force < 0.4 * out.peak) break;
   }
+  const auto near_peak = std::find_if(out.curve.y.begin(), out.curve.y.end(), [&](double force) { return force >= 0.9 * out.peak; });
+  out.kinetic = kinetic[static_cast<Index>(near_peak - out.curve.y.begin())];
   run.steps(static_cast<long long>(1e-5 / run.dt()));
   out.damage = run.fdem().stored_damage();
   out.crack = crack_share(out.mesh, out.damage);
@@ -119,15 +121,17 @@ TriangleMesh disc_mesh(double disc_radius, double element_size, std::uint64_t se
   const fdem::Lattice lattice(2.0 * (disc_radius + frame), 2.0 * (disc_radius + frame), {});
   fdem::Triangulation triangulation(lattice.upper_right());
   fdem::Soup soup;
-  soup.nodes.assign(4, {});
+  constexpr int frame_corners = 4;  // the first points of a triangulation
   int near = 0;
   for (const auto& point : rings(disc_radius, element_size, random)) {
     const int number = triangulation.insert(lattice.nearest(point[0] + frame, point[1] + frame), near);
     near = triangulation.triangle_of(number);
     soup.nodes.push_back(point);
   }
-  for (const fdem::Triangle& triangle : triangulation.triangles())
-    if (*std::min_element(triangle.corner.begin(), triangle.corner.end()) >= 4) soup.triangles.push_back(triangle.corner);
+  for (const fdem::Triangle& triangle : triangulation.triangles()) {
+    const auto& [i, j, k] = triangle.corner;
+    if (std::min({i, j, k}) >= frame_corners) soup.triangles.push_back({i - frame_corners, j - frame_corners, k - frame_corners});
+  }
   return fdem::assemble(soup).value();
 }
 
@@ -152,7 +156,7 @@ std::vector<Row> brazilian_disc(Desk& desk) {
   }
   rows.push_back(compare("mean of the five meshes", "Pa", strength.tensile_strength, sum / meshes, 0.1,
                          fmt::format("{:.3g} to {:.3g}, {:.1f} % apart", low, high, 100.0 * (high - low) * meshes / sum)));
-  rows.push_back(between("kinetic energy over the work at the peak, most", "1", {0.0, 0.01}, kinetic, 0.0));
+  rows.push_back(between("kinetic energy over the work at nine tenths of the peak, most", "1", {0.0, 0.01}, kinetic, 0.0));
   desk.add({"brazilian_force", "FD-11: force of the jaws on five meshes.", chart_page({{"", {"time", "s"}, {"force", "N/m"}, curves}})});
   return rows;
 }
