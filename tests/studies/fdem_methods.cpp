@@ -185,7 +185,7 @@ void print_json(const std::vector<MethodCase>& cases) {
   fmt::print("{}\n", Json{{"schema", "fracfarm.study.fdem_methods/1"}, {"reach", reach}, {"cases", list}}.dump(2));
 }
 
-constexpr int side = 420, gap = 24, head = 64, caption = 26;
+constexpr int side = 324, gap = 24, head = 64, caption = 26;
 
 void draw_case(picture::Canvas& canvas, int y, const MethodCase& one) {
   const auto words = [&](int column, const std::string& text) { canvas.text(gap + column * (side + gap), y + 18, text); };
@@ -201,8 +201,8 @@ void draw_case(picture::Canvas& canvas, int y, const MethodCase& one) {
   words(0, fmt::format("{} {}, FDEM: {:.1f} MPa, drop10 {:.0f} us", one.which.material, one.which.pattern, 1e-6 * one.fdem.peak,
                        1e6 * one.fdem.drop10.value_or(NAN)));
   place(0, picture::draw_mesh(one.fdem.layout.mesh, broken_field(one.fdem, one.fdem.last_time), side));
-  words(1, told(one.same, "phase field, same loads")), place(1, field(one.same));
-  words(2, told(one.own, "phase field, velocity step")), place(2, field(one.own));
+  words(1, told(one.same, "same loads")), place(1, field(one.same));
+  words(2, told(one.own, "velocity step")), place(2, field(one.own));
 }
 
 picture::Canvas draw(const std::vector<MethodCase>& cases, int pattern) {

@@ -37,13 +37,15 @@ Settled settle(const Series& series, const Settling& settling) {
   return {pick.settled_at(), pick.five_step()};
 }
 
-PickCase solve_case(const Case& which, std::uint64_t seed) {
+PickCase solve_case(const Case& which, const FdemPickQuestion& question) {
+  Scene scene = fdem_scene(which, question.choice.seed);
   const auto to = [&](Stop stop) {
-    Scene scene = fdem_scene(which, seed);
     scene.stop = stop;
     return run_fdem(scene);
   };
-  const FdemRun drop = to(Stop::drop10), failure = to(Stop::failure), all = to(Stop::horizon);
+  const FdemRun drop = to(Stop::drop10), failure = to(Stop::failure);
+  if (drop.drop10) scene.horizon = std::min(scene.horizon, question.reach * *drop.drop10);
+  const FdemRun all = to(Stop::horizon);
   PickCase one{which, drop.trouble + failure.trouble + all.trouble, all.drop10, all.five_step, all.last_time, 0.0, 0.0, 0.0, {}};
   if (!one.trouble.empty()) return one;
   one.drop_cpu_s = drop.cpu_s, one.failure_cpu_s = failure.cpu_s, one.horizon_cpu_s = all.cpu_s;
@@ -79,8 +81,8 @@ Counts count(const std::vector<PickCase>& cases, const std::string& material, st
 }
 
 void print_text(const std::vector<PickCase>& cases, const FdemPickQuestion& question) {
-  std::vector<std::vector<std::string>> rows{{"material", "runs", "pick", "settled", "the horizon's", "pick / drop10", "settled / pick",
-                                              "end / drop10", "CPU s to 1.8 drop10", "to the pick", "to the horizon", "trouble"}};
+  std::vector<std::vector<std::string>> rows{{"material", "runs", "pick", "settled", "the end's", "pick / drop10", "settled / pick",
+                                              "end / drop10", "CPU s to 1.8 drop10", "to the pick", "to the end", "trouble"}};
   for (const std::string& material : question.choice.materials) {
     const Counts c = count(cases, material, 0);
     rows.push_back({material, std::to_string(c.runs), std::to_string(c.picks), std::to_string(c.settled), std::to_string(c.agree),
@@ -88,14 +90,14 @@ void print_text(const std::vector<PickCase>& cases, const FdemPickQuestion& ques
                     fmt::format("{:.2f}", c.end_over_drop.mean), fmt::format("{:.2f}", c.drop_cpu.mean),
                     fmt::format("{:.2f}", c.failure_cpu.mean), fmt::format("{:.2f}", c.horizon_cpu.mean), std::to_string(c.troubles)});
   }
-  std::vector<std::vector<std::string>> other{{"wait", "quiet", "settled", "the horizon's", "off % (mean / largest)", "end / drop10"}};
+  std::vector<std::vector<std::string>> other{{"wait", "quiet", "settled", "the end's", "off % (mean / largest)", "end / drop10"}};
   for (std::size_t k = 0; k < std::size(tried); ++k) {
     const Counts c = count(cases, "", k);
     other.push_back({fmt::format("{}", tried[k].wait), fmt::format("{}", tried[k].quiet), fmt::format("{} of {}", c.settled, c.runs),
                      std::to_string(c.agree), mean_most(c.off), fmt::format("{:.2f}", c.end_over_drop.mean)});
   }
-  fmt::print("pick: runs to the horizon that have one; settled: taken as settled before; the horizon's: settled on the same\n{}\n{}\n",
-             table_text(rows), table_text(other));
+  fmt::print("pick: of runs to {} drop10 or the horizon; settled: taken as settled before; the end's: settled on the same\n{}\n{}\n",
+             question.reach, table_text(rows), table_text(other));
 }
 
 void print_json(const std::vector<PickCase>& cases) {
@@ -125,7 +127,7 @@ void print_json(const std::vector<PickCase>& cases) {
 int fdem_pick(const FdemPickQuestion& question) {
   const std::vector<Case> cases = cases_of(question.choice);
   std::vector<PickCase> solved(cases.size());
-  for_all(cases.size(), question.choice.jobs, [&](std::size_t k) { solved[k] = solve_case(cases[k], question.choice.seed); });
+  for_all(cases.size(), question.choice.jobs, [&](std::size_t k) { solved[k] = solve_case(cases[k], question); });
   question.json ? print_json(solved) : print_text(solved, question);
   return exit_ok;
 }

@@ -171,33 +171,32 @@ void print_json(const std::vector<Point>& points, const std::vector<Past>& pasts
 
 constexpr picture::Colour colours[]{{31, 107, 184}, {226, 116, 14}, {44, 145, 72}, {130, 84, 176}};
 
-// Edges over one of the three settings: predicted as a line, observed as crosses.
-void draw_axis(picture::Canvas& canvas, const picture::Box& box, const std::vector<Point>& points,
-               const std::vector<std::string>& materials, std::string_view axis, const picture::Axis& x_axis,
-               double (*x_of)(const Point&)) {
-  struct Numbers {
-    std::vector<double> x, predicted, cross_x, cross_y;
+using Value = double (*)(const Point&);
+
+double most(const std::vector<Point>& points, Value value) {
+  return value(*std::max_element(points.begin(), points.end(), [&](const Point& a, const Point& b) { return value(a) < value(b); }));
+}
+
+// Edges over one of the three settings: predicted as a line by material, observed as crosses.
+void draw_axis(picture::Canvas& canvas, const picture::Box& box, std::vector<Point> points, const std::vector<std::string>& materials,
+               std::string_view axis, const picture::Axis& x_axis, Value x_of) {
+  std::erase_if(points, [&](const Point& p) { return p.axis != axis || p.tier != FdemTier::fast; });
+  const double dx = 0.012 * most(points, x_of), dy = 0.02 * most(points, [](const Point&p) { return p.predicted; });
+  struct Line {
+    std::vector<double> x, y;
   };
-  std::vector<Numbers> numbers(materials.size());
-  picture::Plot plot{"", x_axis, {"time step", "s"}, {}, {}};
-  double x_most = 0.0, y_most = 0.0;
-  for (const Point& p : points)
-    if (p.axis == axis) x_most = std::max(x_most, x_of(p)), y_most = std::max(y_most, p.predicted);
-  for (std::size_t m = 0; m < materials.size(); ++m)
-    for (const Point& p : points) {
-      if (p.axis != axis || p.material != materials[m] || p.tier != FdemTier::fast) continue;
-      Numbers& n = numbers[m];
-      n.x.push_back(x_of(p)), n.predicted.push_back(p.predicted);
-      const double dx = 0.012 * x_most, dy = 0.02 * y_most;
+  std::vector<Line> predicted(materials.size());
+  Line crosses;
+  for (const Point& p : points) {
+    Line& line = predicted[static_cast<std::size_t>(std::find(materials.begin(), materials.end(), p.material) - materials.begin())];
+    line.x.push_back(x_of(p)), line.y.push_back(p.predicted);
+    for (const double way : {1.0, -1.0})
       for (const double s : {-1.0, 1.0, 0.0})
-        n.cross_x.push_back(x_of(p) + s * dx), n.cross_y.push_back(s == 0.0 ? NAN : p.observed + s * dy);
-      for (const double s : {-1.0, 1.0, 0.0})
-        n.cross_x.push_back(x_of(p) + s * dx), n.cross_y.push_back(s == 0.0 ? NAN : p.observed - s * dy);
-    }
-  for (std::size_t m = 0; m < materials.size(); ++m) {
-    plot.curves.push_back({materials[m] + ", predicted", colours[m % 4], numbers[m].x, numbers[m].predicted});
-    plot.curves.push_back({"observed", colours[m % 4], numbers[m].cross_x, numbers[m].cross_y});
+        crosses.x.push_back(x_of(p) + s * dx), crosses.y.push_back(s == 0.0 ? NAN : p.observed + way * s * dy);
   }
+  picture::Plot plot{"", x_axis, {"time step", "s"}, {}, {}};
+  for (std::size_t m = 0; m < materials.size(); ++m) plot.curves.push_back({materials[m], colours[m % 4], predicted[m].x, predicted[m].y});
+  plot.curves.push_back({"observed", picture::black, crosses.x, crosses.y});
   draw_plot(canvas, box, plot);
 }
 

@@ -72,8 +72,11 @@ int main(int argc, char** argv) {
   FdemRulesQuestion fdem_rule;
   add_fdem_study(app, "fdem-rules", "What each rule of FDEM costs and saves", fdem_rule, fdem_rules, status);
   FdemPickQuestion pick;
-  add_fdem_study(app, "fdem-pick", "What the five-step pick costs, and whether it settles on what the horizon gives", pick, fdem_pick,
-                 status);
+  CLI::App* pick_command = add_fdem_study(
+      app, "fdem-pick", "What the five-step pick costs, and whether it settles on what the horizon gives", pick, fdem_pick, status);
+  pick_command->add_option("--reach", pick.reach, "The last word is a run to so many times the stress drop")
+      ->check(CLI::Range(2.0, 1000.0))
+      ->capture_default_str();
   FdemMeshQuestion mesh;
   mesh.choice.patterns = 3;
   add_fdem_study(app, "fdem-mesh", "Mesh size and mesh seeds; 1 where the body's answer moves by more than 10 %", mesh, fdem_mesh, status)

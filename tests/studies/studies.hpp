@@ -46,6 +46,7 @@ int fdem_rules(const FdemRulesQuestion& question);
 // What running on until the five-step pick exists costs, and whether it is the pick of a run to the horizon.
 struct FdemPickQuestion {
   FdemChoice choice;
+  double reach = 8.0;  // of drop10: how far the run goes on whose pick is the last word
   bool json = false;
 };
 int fdem_pick(const FdemPickQuestion& question);
