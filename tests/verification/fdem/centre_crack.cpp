@@ -161,8 +161,10 @@ std::vector<Row> centre_crack(Desk& desk) {
   add(free_path(desk, 0.001, 1), INFINITY);
   desk.part(0.6, 0.4);
   add(free_path(desk, 0.0005, 1), 0.07);
+  const double finest = rows.back().error;
+  for (const std::uint64_t seed : {2, 3}) rows.push_back(row_of(free_path(desk, 0.001, seed), target, INFINITY));
   rows.push_back(between("straight: error at h = 1 mm over that at 2 mm", "1", {0.0, 0.75}, rows[1].error / rows[0].error, 0.0));
-  rows.push_back(between("mesher: error at h = 0.5 mm over that at 2 mm", "1", {0.0, 0.75}, rows[4].error / rows[2].error, 0.0));
+  rows.push_back(between("mesher: error at h = 0.5 mm over that at 2 mm", "1", {0.0, 0.75}, finest / rows[2].error, 0.0));
   desk.add({"centre_crack", "FD-12: the finest of the mesher's plates after its peak, red where joints are broken.",
             picture::draw_mesh(mesh, damage, 420)});
   desk.add({"centre_crack_stress", "FD-12: mean stress of the plates.", chart_page({{"", {"time", "s"}, {"mean stress", "Pa"}, curves}})});
