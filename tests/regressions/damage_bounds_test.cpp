@@ -17,7 +17,7 @@ TEST_CASE("damage that leaves its bounds by less than the solve's tolerance is s
   const auto bounded = [](const std::vector<float>& field) {
     return std::all_of(field.begin(), field.end(), [](float psi) { return psi >= 0.0f && psi <= 1.0f; });
   };
-  for (const Frame& frame : run->frames) CHECK(bounded(frame.psi));
-  CHECK(bounded(run->psi_initial));
-  CHECK(bounded(run->psi_failure));
+  for (const Frame& frame : run->frames) CHECK(bounded(frame.damage));
+  CHECK(bounded(run->damage_initial));
+  CHECK(bounded(run->damage_failure));
 }
