@@ -205,7 +205,7 @@ std::optional<std::string_view> try_otherwise(int trials, Scene& scene, RunContr
     if (trials == 0) return control.step_scale *= 0.5, "half the step";
     if (trials > 1 || scene.fdem.tier == FdemTier::reference) return std::nullopt;
     scene.fdem.tier = FdemTier::reference;
-    scene.fdem.precision.reset(), scene.fdem.penalty.reset();
+    scene.fdem.precision.reset(), scene.fdem.penalty.reset(), scene.fdem.dt.reset();
     return "the reference tier";
   }
   if (scene.phase_field.step_control != StepControl::adaptive || trials == step_halvings) return std::nullopt;

@@ -99,7 +99,7 @@ std::optional<double> disagreement(std::span<const FailureTime> times) {
 }
 
 std::optional<double> of_broken_body(std::optional<double> time, std::span<const double> break_time) {
-  const bool broke = time && std::any_of(break_time.begin(), break_time.end(), [&](double edge) { return edge <= *time; });
+  const bool broke = time && std::any_of(break_time.begin(), break_time.end(), [&](double edge) { return edge <= broken_soon_after * *time; });
   return broke ? time : std::nullopt;
 }
 

@@ -59,7 +59,9 @@ Judgement judge(std::string_view method, std::span<const FailureTime> times, std
 // The longest of the candidate times less the shortest (s); nothing where fewer than two were met.
 std::optional<double> disagreement(std::span<const FailureTime> times);
 
-// A lost stress or a pick is a failure only of a body that broke by then. `break_time` by edge (s), not a number where it never broke.
+// A lost stress or a pick is a failure only of a body that broke by then, or soon after: joints that soften carry little for a while before
+// they count as broken. `break_time` by edge (s), not a number where it never broke.
+inline constexpr double broken_soon_after = 1.25;  // of the time
 std::optional<double> of_broken_body(std::optional<double> time, std::span<const double> break_time);
 
 }  // namespace fracfarm

@@ -9,7 +9,18 @@ namespace {
 
 using Index = std::size_t;
 
+double edge_length(const TriangleMesh& mesh, Index edge) {
+  const auto &a = mesh.nodes[static_cast<Index>(mesh.edge_nodes[edge][0])], &b = mesh.nodes[static_cast<Index>(mesh.edge_nodes[edge][1])];
+  return std::hypot(b[0] - a[0], b[1] - a[1]);
+}
+
 }  // namespace
+
+template <class Real>
+void Fdem<Real>::measure_cracks() {
+  for (Index edge = 0; edge < body_.mesh.edge_nodes.size(); ++edge)
+    if (body_.mesh.edge_kind[edge] == EdgeKind::crack) state_.ledger.crack_length += edge_length(body_.mesh, edge);
+}
 
 // Right triangle less left one at both ends of the edge, m.
 template <class Real>
@@ -53,6 +64,7 @@ void Fdem<Real>::note_breaks(double time) {
       const Index edge = static_cast<Index>(plan_.edge_of[static_cast<Index>(joint)]);
       if (!std::isnan(state_.break_time[edge])) continue;
       state_.break_time[edge] = time, state_.break_mode[edge] = static_cast<unsigned char>(mode_of(joint));
+      state_.ledger.crack_length += edge_length(body_.mesh, edge);
       expose(plan_.left_side[static_cast<Index>(joint)]), expose(plan_.right_side[static_cast<Index>(joint)]);
     }
   }
@@ -114,6 +126,7 @@ BreakMode Fdem<Real>::mode_of(int joint) const {
 }
 
 #define FRACFARM_INSTANTIATE(Real)                                 \
+  template void Fdem<Real>::measure_cracks();                      \
   template void Fdem<Real>::note_breaks(double);                   \
   template void Fdem<Real>::follow_stretched();                    \
   template bool Fdem<Real>::follow_again(const std::vector<int>&); \

@@ -44,6 +44,7 @@ struct Ledger {
   double plastic = 0.0;
   double external_work = 0.0;   // of whole steps; the last half is the sample's
   double initial_energy = 0.0;  // before the boundary moved
+  double crack_length = 0.0;    // m, of edges that are open: cracks from the start and joints that broke
 };
 
 template <class Real>

@@ -131,6 +131,7 @@ void Fdem<Real>::step_back(double dt) {
 template <class Real>
 Result<void> Fdem<Real>::start(double dt) {
   dt_ = dt;
+  measure_cracks();
   put_rows();
   if (!rules_.damage_where_stretched)
     for (int joint = 0; joint < plan_.joints; ++joint)
@@ -200,6 +201,7 @@ SampleRow Fdem<Real>::sample(long long n, double dt) const {
   row.step_time = time, row.dt = dt;
   row.stress_xx = sums.stress_xx / plan_.area, row.stress_zz = sums.stress_zz / plan_.area;
   row.reaction = reactions(dt);
+  row.crack_length = ledger.crack_length;
   row.kinetic_energy = sums.kinetic;
   row.elastic_energy = sums.elastic + stored_in_joints();
   row.plastic_energy = ledger.plastic + sums.plastic;

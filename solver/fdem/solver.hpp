@@ -49,6 +49,7 @@ class Fdem final : public MeshSimulation {
   void tell_velocities(double time);
   void pull(double time);
   void move_as_one(double dt);
+  void measure_cracks();
   void note_breaks(double time);
   void expose(int side);
   void expose_cracks_that_close();

@@ -79,6 +79,8 @@ TEST_CASE("a torn plate loses its stress, breaks along its middle and keeps its 
     broken += !std::isnan(layout.break_time[e]);
   }
   CHECK(broken >= 8);  // 24 mm of elements of 3 mm
+  CHECK(result.series["crack_length"].front() == Approx(0.012));
+  CHECK(result.series["crack_length"].back() > 0.03);
 }
 
 TEST_CASE("the damage at a criterion lies between that of the frames around it") {
