@@ -2,6 +2,7 @@
 // opens a transaction, gives any number of messages and a tick, commits, and only then sends the replies.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -60,8 +61,14 @@ class Reactor {
     std::int64_t recheck = 0;  // of a DONE job, for which this is; 0: the job itself
     std::int64_t worker = 0;
   };
+  struct Outrun {
+    std::int64_t job = 0;
+    wire::LeaseId lease;
+    std::int64_t worker = 0;
+  };
   using LeaseKey = std::pair<std::uint64_t, std::uint64_t>;
 
+  bool was_outrun(const std::string& peer, const Job& job, const wire::LeaseId& lease) const;
   wire::Reply on_hello(const std::string& peer, const wire::Hello& hello, Instant now);
   wire::Reply on_next(const std::string& peer, Session& session, const wire::Next& next, Instant now);
   wire::Reply on_beat(const std::string& peer, Session& session, const wire::Beat& beat, Instant now);
@@ -123,6 +130,7 @@ class Reactor {
   std::uint64_t counter_ = 0;
   Roster roster_;
   RateMeter rate_;
+  std::deque<Outrun> outrun_;               // leases whose jobs others finished first: their results are still duplicates, not lies
   std::map<LeaseKey, Held> held_;            // deadlines of LEASED jobs; the ledger says whose they are
   std::multimap<double, std::int64_t> due_;  // RETRY_WAIT jobs by when they wake
   LearnedTimes learned_;

@@ -11,6 +11,8 @@
 namespace fracfarm {
 namespace {
 
+constexpr std::size_t most_outrun = 1000;
+
 bool is_file_name(const std::string& name) {
   return !name.empty() && name.size() <= 200 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
@@ -80,10 +82,19 @@ wire::Receipt Reactor::on_duplicate(const Job& job, const wire::Completion& comp
   return wire::Receipt::duplicate;
 }
 
+// The ledger keeps no try that ended because another came first.
+bool Reactor::was_outrun(const std::string& peer, const Job& job, const wire::LeaseId& lease) const {
+  return std::any_of(outrun_.begin(), outrun_.end(), [&](const Outrun& it) {
+    if (it.job != job.id || !(it.lease == lease)) return false;
+    const std::optional<WorkerRow> row = worker_row(ledger_.reading(), it.worker);
+    return row && row->peer == peer;
+  });
+}
+
 wire::Receipt Reactor::on_completion(const std::string& peer, Session& session, const wire::Completion& completion, Instant now) {
   const std::optional<Job> job = job_by_key(ledger_.reading(), completion.key);
   if (!job || completion.lease.epoch > epoch_ || completion.lease.epoch == 0) return wire::Receipt::refused;
-  if (!was_given(ledger_.reading(), peer, *job, completion.lease)) {
+  if (!was_given(ledger_.reading(), peer, *job, completion.lease) && !was_outrun(peer, *job, completion.lease)) {
     note(fmt::format("{} says that it did job {}, which it was never given: refused", peer, job->id));
     return wire::Receipt::refused;
   }
@@ -98,6 +109,10 @@ wire::Receipt Reactor::on_completion(const std::string& peer, Session& session, 
   if (recheck) return end_recheck(*recheck, *job, completion, session, now);
   if (job->state == State::done) return on_duplicate(*job, completion, now);
   if (job->state == State::cancelled) return wire::Receipt::stale;
+  if (job->state == State::leased && !(job->lease == completion.lease)) {
+    outrun_.push_back({job->id, job->lease, job->worker});
+    if (outrun_.size() > most_outrun) outrun_.pop_front();
+  }
   ledger_.complete(*job, outcome_of(completion, now.wall_s), completion.lease, session.worker);
   held_.erase({job->lease.epoch, job->lease.counter});
   session.fast_faults = 0;

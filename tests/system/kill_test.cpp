@@ -50,8 +50,8 @@ TEST_CASE("killing the coordinator again and again repeats no job while the work
 
 TEST_CASE("killing a worker leaves no solver behind and repeats only what it had not finished") {
   FarmBench farm;
-  constexpr int jobs = 40;
-  farm.submit({.patterns = jobs, .set = R"("phase_field.cells" = [79, 79])"});
+  constexpr int jobs = 60;
+  farm.submit({.patterns = jobs, .set = R"("phase_field.cells" = [127, 127])"});
   Process coordinator = farm.coordinator({"--until-done", "--lease-timeout", "3"});
   RandomStream random(12, 1, 1);
   std::map<int, int> before;
