@@ -42,7 +42,7 @@ TEST_CASE("run does it all in one command, and again it finds nothing to do") {
 
 TEST_CASE("a drained worker finishes what it runs, takes no more and ends well") {
   FarmBench farm;
-  farm.submit({.patterns = 40});
+  farm.submit({.patterns = 40, .set = R"("phase_field.cells" = [127, 127])"});
   Process coordinator = farm.coordinator({"--until-done"});
   Process drained = farm.worker({"--slots", "1"});
   REQUIRE(wait_until([&] { return farm.done() >= 2; }));
