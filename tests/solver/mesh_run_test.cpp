@@ -130,15 +130,11 @@ TEST_CASE("threads change no bit of an FDEM run") {
 
 TEST_CASE("a scene that no sound mesh can be made of is rejected with the reason") {
   Scene scene = torn();
-  scene.cracks.clear();
-  for (int i = 0; i < 40; ++i) scene.cracks.push_back({0.0, 0.001 + 0.0002 * i, 0.03, 0.0011 + 0.00031 * i});
+  scene.cracks = {{0.018, 0.018, 0.0185, 0.018}};  // a sixth of an element
   const RunResult result = run(scene);
-  if (result.judgement.verdict == Verdict::rejected) {
-    CHECK_FALSE(result.judgement.rule.empty());
-    CHECK(result.steps == 0);
-  } else {
-    CHECK(result.steps > 0);
-  }
+  CHECK(result.judgement.verdict == Verdict::rejected);
+  CHECK_FALSE(result.judgement.rule.empty());
+  CHECK(result.steps == 0);
 }
 
 TEST_CASE("a run past its bound begins again with half the step, and says so") {
