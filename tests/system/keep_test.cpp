@@ -43,7 +43,8 @@ TEST_CASE("a damaged record is found, computed again on demand, and the farm is 
   finish(farm, campaign);
   farm.check_all_done(4);
   CHECK(farm.explain(2)["peak_stress"] == record["peak_stress"]);
-  CHECK_FALSE(farm.explain(2)["offset"] == record["offset"]);
+  const auto again = farm.explain(2);  // in a shard of its own session, where it may well lie at the same offset
+  CHECK_FALSE((again["shard"] == record["shard"] && again["offset"] == record["offset"]));
 }
 
 TEST_CASE("an old copy of the ledger, made while a coordinator served, is put back and adopts what the shards have since") {
