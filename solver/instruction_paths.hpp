@@ -1,7 +1,7 @@
-#pragma once
-
 // One table of kernels for each instruction set: which of them this processor runs, and which one is taken. Both solvers choose theirs
 // here.
+#pragma once
+
 #include <array>
 #include <cstdlib>
 #include <span>
