@@ -1,6 +1,6 @@
 // fracfarm-farm-throughput: what a farm's bookkeeping costs, measured on this machine with the programs as they are: real coordinator,
 // CURVE, every commit synced, simulated workers as processes of their own that do their jobs in no time. Beside it, in the same run, what
-// GNU parallel and Dask distributed make of jobs that do nothing, where they are installed. Prints one table; asserts nothing.
+// GNU parallel and Dask distributed make of jobs that do nothing, where they are installed. Prints one table and judges no figure.
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "common/base/build_info.hpp"
@@ -77,10 +78,24 @@ Timed timed(const std::vector<std::string>& words, const fs::path& output) {
   return run;
 }
 
+// Of all threads of a process, by /proc.
+double cpu_seconds(const std::string& process) {
+  std::ifstream file("/proc/" + process + "/stat");
+  std::string words(std::istreambuf_iterator<char>(file), {});
+  std::istringstream after_name(words.substr(std::min(words.size(), words.rfind(')') + 1)));
+  std::string skipped;
+  double user = 0.0, system = 0.0;
+  for (int n = 0; n < 11; ++n) after_name >> skipped;
+  after_name >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
 // --- a worker that does its jobs in no time ---
 
 struct Tally {
   std::uint64_t done = 0;
+  std::uint64_t done_after = 0;  // reported when the time was over
+  double cpu_s = 0.0;
   std::array<std::uint32_t, 2000> claim_ms10{};  // claims by tenths of a millisecond
 };
 
@@ -113,7 +128,8 @@ Tally work(const Options& options, int number, int batch, double seconds) {
     for (const wire::Assignment& it : jobs->assignments) finished.push_back(done(it, ++n));
     if (jobs->assignments.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  (void)client->ask(wire::Next{finished, {}, {}, 0, -1.0}, 60.0);
+  tally.cpu_s = cpu_seconds("self");
+  if (client->ask(wire::Next{finished, {}, {}, 0, -1.0}, 60.0)) tally.done_after = finished.size();
   (void)client->ask(wire::Bye{}, 10.0);
   return tally;
 }
@@ -121,6 +137,7 @@ Tally work(const Options& options, int number, int batch, double seconds) {
 struct Rate {
   double jobs_per_s = 0.0, p50_ms = 0.0, p99_ms = 0.0;
   std::uint64_t done = 0;
+  double worker_us = 0.0;  // of the processors, a job
 };
 
 // The workers begin together and measure over the same seconds.
@@ -151,11 +168,14 @@ Rate measure(const Options& options, int batch) {
     ::close(input);
     wait_for(pid);
     all.done += one.done;
+    all.done_after += one.done_after;
+    all.cpu_s += one.cpu_s;
     for (std::size_t at = 0; at < one.claim_ms10.size(); ++at) all.claim_ms10[at] += one.claim_ms10[at];
   }
   std::uint64_t claims = 0, seen = 0;
   for (const std::uint32_t n : all.claim_ms10) claims += n;
-  Rate rate{static_cast<double>(all.done) / options.seconds, 0.0, 0.0, all.done};
+  Rate rate{static_cast<double>(all.done) / options.seconds, 0.0, 0.0, all.done + all.done_after, 0.0};
+  rate.worker_us = 1e6 * all.cpu_s / static_cast<double>(std::max<std::uint64_t>(1, rate.done));
   for (std::size_t at = 0; at < all.claim_ms10.size(); ++at) {
     seen += all.claim_ms10[at];
     const double top_ms = 0.1 * static_cast<double>(at + 1);
@@ -180,6 +200,7 @@ struct Coordinator {
     if (pid > 0) ::kill(pid, signal), wait_for(pid);
     pid = -1;
   }
+  double cpu_s() const { return cpu_seconds(std::to_string(pid)); }
   double peak_mb() const {
     std::ifstream file(fmt::format("/proc/{}/status", pid));
     for (std::string line; std::getline(file, line);)
@@ -188,13 +209,18 @@ struct Coordinator {
   }
 };
 
+// A drill breaks no body: it has neither materials nor loads.
 fs::path write_campaign(const Options& options) {
   const fs::path file = options.folder / "campaign.json";
-  const std::uint64_t patterns = options.jobs / 10;
-  std::ofstream(file) << fmt::format(
-      R"({{"name": "throughput", "seed": 7, "jobs": [{{"method": "{}", "materials": ["pbx", "steel", "aluminum", "tungsten", "shale"],
-    "loads": ["uniaxial", "biaxial"], "patterns": {{"orthogonal": "1-{}"}}}}]}})",
-      options.method, patterns);
+  nlohmann::json block{{"method", options.method}};
+  std::uint64_t jobs_a_pattern = 1;
+  if (options.method != "drill") {
+    block["materials"] = {"pbx", "steel", "aluminum", "tungsten", "shale"};
+    block["loads"] = {"uniaxial", "biaxial"};
+    jobs_a_pattern = 10;
+  }
+  block["patterns"] = {{"orthogonal", fmt::format("1-{}", std::max<std::uint64_t>(1, options.jobs / jobs_a_pattern))}};
+  std::ofstream(file) << nlohmann::json{{"name", "throughput"}, {"seed", 7}, {"jobs", {block}}};
   return file;
 }
 
@@ -208,7 +234,8 @@ double first_claim_s(const Options& options) {
   const auto reply = client->ask(wire::Next{{}, {}, {}, 1, -1.0}, 60.0);
   const double took_s = since(began);
   const auto* jobs = reply ? std::get_if<wire::Jobs>(&*reply) : nullptr;
-  return jobs && !jobs->assignments.empty() ? took_s : -1.0;
+  if (!jobs || jobs->assignments.empty()) throw std::runtime_error("no job after a restart");
+  return took_s;
 }
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -225,11 +252,16 @@ void measure_farm(const Options& options, Rows& rows) {
     if (submitted.status != 0) throw std::runtime_error("submit: " + submitted.output);
     add(fmt::format("submit of {} jobs", options.jobs), fmt::format("{:.2f} s", submitted.seconds), "<= 15 s");
     for (const int batch : {1, 8}) {
+      const double cpu_before_s = coordinator.cpu_s();
       const Rate rate = measure(options, batch);
+      const double coordinator_us = 1e6 * (coordinator.cpu_s() - cpu_before_s) / static_cast<double>(std::max<std::uint64_t>(1, rate.done));
+      if (rate.done == 0) throw std::runtime_error("no worker got a job done");
       done += rate.done;
       add(fmt::format("durable jobs/s, {} workers, batch {}", options.workers, batch), fmt::format("{:.0f}", rate.jobs_per_s),
           batch == 1 ? ">= 5000" : ">= 20000");
       add(fmt::format("claim p50, p99 at batch {}", batch), fmt::format("{:.1f}, {:.1f} ms", rate.p50_ms, rate.p99_ms), "p99 <= 50 ms");
+      add(fmt::format("processor time a job at batch {}", batch),
+          fmt::format("coordinator {:.0f} us, workers {:.0f} us", coordinator_us, rate.worker_us), "");
     }
     std::vector<double> seconds;
     for (int n = 0; n < 9; ++n)
