@@ -51,7 +51,7 @@ void Session::say_something() {
 std::optional<wire::Request> Session::next_request() {
   under_way_ = {};
   if (!welcomed_) return now_ >= greet_at_ ? std::optional(make_hello()) : std::nullopt;
-  if (phase_ == Phase::leaving) {
+  if (phase_ == Phase::leaving && !anything_to_report()) {  // a claim under way may have brought jobs that go back first
     under_way_.bye = true;
     return wire::Bye{};
   }

@@ -194,6 +194,19 @@ TEST_CASE("TERM ends in time even where no coordinator answers") {
   CHECK(bench.finished == exit_stopped);
 }
 
+TEST_CASE("jobs that come while a worker leaves are given back before it says BYE") {
+  Bench bench;
+  bench.welcome_and_take_next();
+  bench.feed(DrainAsked{});
+  bench.give({assignment(1), assignment(2)});  // the answer to what was asked before
+  CHECK(bench.started.empty());
+  CHECK(bench.take<wire::Next>().returned.size() == 2);
+  bench.give({});
+  bench.take<wire::Bye>();
+  bench.reply(wire::ByeReply{});
+  CHECK(bench.finished == exit_ok);
+}
+
 TEST_CASE("the end of the allocation is a planned stop in time") {
   Bench bench({.slots = 1, .end_margin_s = 30.0, .end_at = 200.0});
   CHECK(bench.take<wire::Hello>().remaining_s == 100.0);
