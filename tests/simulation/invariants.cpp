@@ -101,6 +101,8 @@ void Watch::look_at_attempt(const Job& job, const AttemptRow& row, double now) {
     broken(fmt::format("I4: job {} was taken from {} {:.1f} s after it was heard", job.id, lease.peer, now - lease.heard_at));
   if (row.signature == "worker_restarted" && lease.life == lives_[lease.peer])
     broken(fmt::format("I4: job {} was taken from {}, which has not started again", job.id, lease.peer));
+  if (ended_by_coordinator(row) && left_.contains({lease.peer, lease.life}))
+    broken(fmt::format("I10: {} left in good order, and job {} is on record as {}", lease.peer, job.id, row.signature));
   if (row.fault != "PLANNED_STOP" && lease.returned && !ended_by_coordinator(row))
     broken(fmt::format("I10: job {} was given back and is on record as {}", job.id, row.fault));
 }

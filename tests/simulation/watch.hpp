@@ -25,6 +25,7 @@ class Watch {
   void stored(const std::string& shard, std::uint64_t offset, const std::string& digest) { stored_[{shard, offset}] = digest; }
   void lost(const std::string& shard, std::uint64_t offset) { stored_.erase({shard, offset}); }  // with a node's power
   void began(const std::string& peer, std::uint64_t life) { lives_[peer] = life; }               // a worker process
+  void left(const std::string& peer, std::uint64_t life) { left_.insert({peer, life}); }         // it said BYE and was heard
   // A dead life's HELLO that nobody ever answered: the coordinator cannot tell that the life is over. The network of this world delivers it
   // before the next life speaks, or never.
   bool unheard_of_dead(const std::string& peer, const wire::RequestEnvelope& asked) const {
@@ -77,7 +78,7 @@ class Watch {
   double lease_timeout_s_, wall_budget_s_;
   std::map<std::pair<std::string, std::uint64_t>, std::string> stored_;  // (shard, offset) -> digest of what lies there, synced
   std::map<std::string, std::uint64_t> lives_;                           // by peer
-  std::set<std::pair<std::string, std::uint64_t>> welcomed_;             // lives of peers
+  std::set<std::pair<std::string, std::uint64_t>> welcomed_, left_;      // lives of peers
   std::map<LeaseKey, Given> given_;
   std::map<std::pair<std::string, int>, LeaseKey> tries_;  // (key, attempt) -> lease
   std::map<std::string, std::vector<LeaseKey>> served_;    // one claim -> the leases it got

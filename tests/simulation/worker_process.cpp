@@ -135,6 +135,7 @@ void WorkerProcess::hear(const std::string& bytes) {
   const auto reply = wire::decode_reply(bytes);
   if (!alive() || !reply || pending_.empty() || reply->request_id != request_id_) return;
   pending_.clear();
+  if (std::holds_alternative<wire::ByeReply>(reply->reply)) world_.watch.left(name_of_worker(number_), life_);
   if (const auto* refusal = std::get_if<wire::Refusal>(&reply->reply)) return feed(worker::RequestRefused{refusal->reason});
   feed(worker::ReplyCame{reply->reply});
 }
