@@ -1,8 +1,9 @@
 // What follows when joints break: their time and mode, and faces that contact must know.
-#include "solver/fdem/solver.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "solver/fdem/followed.hpp"
+#include "solver/fdem/solver.hpp"
 
 namespace fracfarm::fdem {
 namespace {
@@ -32,34 +33,25 @@ std::array<Real, 4> Fdem<Real>::opening_of(int joint) const {
 
 template <class Real>
 void Fdem<Real>::follow_stretched() {
-  for (int b = 0; b < plan_.joint_blocks(); ++b) {
-    if (!scratch_.stretched[static_cast<Index>(b)]) continue;
-    for (int joint = b * lanes; joint < (b + 1) * lanes; ++joint) {
+  for (Index b = 0; b < scratch_.stretched.size(); ++b) {
+    if (!scratch_.stretched[b]) continue;
+    for (Index place = b * lanes; place < (b + 1) * lanes; ++place) {
+      const int joint = scratch_.springs.joint_at[place];
+      if (joint < 0) continue;
       const auto [ax, az, bx, bz] = opening_of(joint);
-      if (std::max(ax * ax + az * az, bx * bx + bz * bz) > scratch_.reach[static_cast<Index>(joint)])
-        follow(plan_, state_, scratch_, joint, {ax, az, bx, bz});
+      if (std::max(ax * ax + az * az, bx * bx + bz * bz) > scratch_.reach[place]) follow(plan_, state_, scratch_, joint, {ax, az, bx, bz});
     }
   }
-}
-
-// False where these are no joints.
-template <class Real>
-bool Fdem<Real>::follow_again(const std::vector<int>& joints) {
-  for (const int joint : joints) {
-    const bool known = joint >= 0 && joint < plan_.joints && plan_.edge_of[static_cast<Index>(joint)] >= 0;
-    if (!known || scratch_.place_of[static_cast<Index>(joint)] >= 0) return false;
-    follow(plan_, state_, scratch_, joint, {});
-  }
-  return true;
+  if (is_unsettled(state_)) settle(plan_, state_, scratch_);
 }
 
 template <class Real>
 void Fdem<Real>::note_breaks(double time) {
-  for (int b = 0; b < followed_blocks(); ++b) {
+  for (int b = 0; b < scratch_.followed.blocks(); ++b) {
     if (!scratch_.breaks[static_cast<Index>(b)]) continue;
     for (int l = 0; l < lanes; ++l) {
       const Index at = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
-      const int joint = scratch_.joint_at[static_cast<Index>(b * lanes + l)];
+      const int joint = scratch_.followed.joint_at[static_cast<Index>(b * lanes + l)];
       if (joint < 0 || state_.damage[at] < Real(1) || state_.damage[at + lanes] < Real(1)) continue;
       const Index edge = static_cast<Index>(plan_.edge_of[static_cast<Index>(joint)]);
       if (!std::isnan(state_.break_time[edge])) continue;
@@ -125,13 +117,12 @@ BreakMode Fdem<Real>::mode_of(int joint) const {
   return share >= 0.75 ? BreakMode::tension : share <= 0.25 ? BreakMode::shear : BreakMode::mixed;
 }
 
-#define FRACFARM_INSTANTIATE(Real)                                 \
-  template void Fdem<Real>::measure_cracks();                      \
-  template void Fdem<Real>::note_breaks(double);                   \
-  template void Fdem<Real>::follow_stretched();                    \
-  template bool Fdem<Real>::follow_again(const std::vector<int>&); \
-  template void Fdem<Real>::expose(int);                           \
-  template void Fdem<Real>::watch_side(int);                       \
+#define FRACFARM_INSTANTIATE(Real)               \
+  template void Fdem<Real>::measure_cracks();    \
+  template void Fdem<Real>::note_breaks(double); \
+  template void Fdem<Real>::follow_stretched();  \
+  template void Fdem<Real>::expose(int);         \
+  template void Fdem<Real>::watch_side(int);     \
   template void Fdem<Real>::expose_cracks_that_close();
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

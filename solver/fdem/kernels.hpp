@@ -63,7 +63,7 @@ struct View {
   const Real* reach;         // [b][l], m^2: springs that open further at an end must be followed; largest number where none can
   unsigned char* stretched;  // [b]: 1 where a spring of the block does
   const Real* along;         // [b][2][l], m: of followed joints, from the first node to the second, undeformed
-  Real* damage;              // [b][2][l], at the two points
+  Real *damage, *kept;       // [b][2][l], at the two points; and the curve's z of it
   Real *opening, *force;     // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
   unsigned char* breaks;     // [b]: 1 where a followed joint of the block broke in this step
   const law::Joint<Real>* joint_laws;

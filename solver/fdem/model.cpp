@@ -1,7 +1,6 @@
-#include "solver/fdem/model.hpp"
+#include "solver/fdem/followed.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 
@@ -90,63 +89,7 @@ void set_by_corner(const Plan& plan, const std::vector<std::array<double, 2>>& v
       field[at_corner(plan.corner_of(static_cast<int>(corner)), axis)] = static_cast<Real>(values[corner][static_cast<std::size_t>(axis)]);
 }
 
-template <class Real>
-void set_springs(const Plan& plan, Scratch<Real>& scratch) {
-  scratch.springs = {plan.left_row, plan.right_row, plan.left_slot, plan.right_slot, plan.joint_law_of_block, cast<Real>(plan.length)};
-  scratch.stretched.assign(static_cast<std::size_t>(plan.joint_blocks()), 0);
-  scratch.place_of.assign(static_cast<std::size_t>(plan.joints), -1);
-  scratch.free_place.assign(plan.joint_laws.size(), 0);
-  for (int joint = 0; joint < plan.joints; ++joint) {
-    const auto& law = plan.joint_laws[static_cast<std::size_t>(plan.joint_law_of_block[static_cast<std::size_t>(joint / lanes)])];
-    const double onset = 1.0 / std::max(law.per_onset_n, law.per_onset_t);
-    const bool pad = plan.edge_of[static_cast<std::size_t>(joint)] < 0;
-    scratch.reach.push_back(pad ? std::numeric_limits<Real>::max() : static_cast<Real>(onset * onset));
-  }
-}
-
-// A block of pads: no length, between the two spare triangles behind the last.
-template <class Real>
-void add_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
-  const int spare = 3 * plan.slots;
-  JointList<Real>& list = scratch.followed;
-  list.left_row.insert(list.left_row.end(), lanes, row_of_side(spare)),
-      list.right_row.insert(list.right_row.end(), lanes, row_of_side(spare + 3));
-  list.left_slot.insert(list.left_slot.end(), lanes, 4 * spare), list.right_slot.insert(list.right_slot.end(), lanes, 4 * (spare + 3));
-  list.length.insert(list.length.end(), lanes, Real(0)), list.law_of_block.push_back(law);
-  scratch.along.insert(scratch.along.end(), lanes, Real(1)), scratch.along.insert(scratch.along.end(), lanes, Real(0));
-  scratch.breaks.push_back(0), scratch.joint_at.insert(scratch.joint_at.end(), lanes, -1);
-  state.damage.insert(state.damage.end(), 2 * lanes, Real(0));
-  state.opening.insert(state.opening.end(), 4 * lanes, Real(0)), state.force.insert(state.force.end(), 4 * lanes, Real(0));
-}
-
 }  // namespace
-
-template <class Real>
-void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening) {
-  const std::size_t j = static_cast<std::size_t>(joint);
-  const int law_index = plan.joint_law_of_block[j / lanes];
-  int& free_place = scratch.free_place[static_cast<std::size_t>(law_index)];
-  if (free_place % lanes == 0) free_place = static_cast<int>(scratch.joint_at.size()), add_block(plan, state, scratch, law_index);
-  const std::size_t place = static_cast<std::size_t>(free_place++), block = place / lanes, lane = place % lanes;
-  state.followed.push_back(joint);
-  scratch.joint_at[place] = joint, scratch.place_of[j] = static_cast<int>(place);
-  JointList<Real>& list = scratch.followed;
-  list.left_row[place] = plan.left_row[j], list.right_row[place] = plan.right_row[j];
-  list.left_slot[place] = plan.left_slot[j], list.right_slot[place] = plan.right_slot[j];
-  list.length[place] = static_cast<Real>(plan.length[j]);
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    scratch.along[(block * 2 + axis) * lanes + lane] = static_cast<Real>(plan.along[(j / lanes * 2 + axis) * lanes + j % lanes]);
-  const auto& law = plan.joint_laws[static_cast<std::size_t>(law_index)];
-  const double furthest = std::max(std::hypot(opening[0], opening[1]), std::hypot(opening[2], opening[3]));
-  const double scale = 1.0 / std::max(1.0, furthest * std::max(law.per_onset_n, law.per_onset_t)),
-               spring = law.penalty * plan.length[j] / 6.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t at = (block * 4 + i) * lanes + lane;
-    state.opening[at] = static_cast<Real>(scale * opening[i]);
-    state.force[at] = static_cast<Real>(scale * spring * (2.0 * opening[i] + opening[(i + 2) % 4]));
-  }
-  scratch.springs.length[j] = Real(0), scratch.reach[j] = std::numeric_limits<Real>::max();
-}
 
 template <class Real>
 Model<Real> make_model(const Plan& plan, const Body& body) {
@@ -178,6 +121,8 @@ Scratch<Real> make_scratch(const Plan& plan, const Model<Real>& model, const Bod
   Scratch<Real> scratch;
   scratch.rows.assign((static_cast<std::size_t>(plan.slots) + 2) * row_size, Real(0));
   scratch.told_velocity.assign(model.told.size(), Real(0)), scratch.told_force.assign(model.told.size(), Real(0));
+  scratch.place_of.assign(static_cast<std::size_t>(plan.joints), -1);
+  scratch.free_place.assign(plan.joint_laws.size(), 0);
   set_springs(plan, scratch);
   scratch.told_before.assign(model.told_dofs.size(), 0.0);
   scratch.needs.assign(static_cast<std::size_t>(plan.triangle_blocks()), 0);
@@ -192,10 +137,9 @@ Scratch<Real> make_scratch(const Plan& plan, const Model<Real>& model, const Bod
   return scratch;
 }
 
-#define FRACFARM_INSTANTIATE(Real)                                                                    \
-  template Model<Real> make_model(const Plan&, const Body&);                                          \
-  template State<Real> make_state(const Plan&, const Model<Real>&, const Body&);                      \
-  template void follow(const Plan&, State<Real>&, Scratch<Real>&, int, const std::array<double, 4>&); \
+#define FRACFARM_INSTANTIATE(Real)                                               \
+  template Model<Real> make_model(const Plan&, const Body&);                     \
+  template State<Real> make_state(const Plan&, const Model<Real>&, const Body&); \
   template Scratch<Real> make_scratch(const Plan&, const Model<Real>&, const Body&);
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

@@ -52,7 +52,8 @@ struct State {
   Field<Real> u, v;                    // [block][corner_count][lane]
   Field<Real> slots;                   // forces of the joints at u, N/m
   Field<Real> plastic;                 // [block][4][lane]
-  std::vector<int> followed;           // joints, in the order they came
+  std::vector<int> followed;           // joints, in the order of their places
+  int settled = 0;                     // so many of them were there when joints were last settled (followed.hpp)
   Field<Real> damage, opening, force;  // of followed joints: [block][2][lane], [block][4][lane], [block][4][lane]
   std::vector<double> break_time;      // by edge
   std::vector<unsigned char> break_mode;
@@ -65,11 +66,13 @@ struct State {
 enum class Stage { boundary, triangles, joints, contact };
 inline constexpr std::array<const char*, 4> stage_names{"boundary", "triangles", "joints", "contact"};
 
-// Joints as the kernels go through them.
+// Joints as the kernels go through them, and which one is where, -1: a pad.
 template <class Real>
 struct JointList {
   std::vector<int> left_row, right_row, left_slot, right_slot, law_of_block;
   Field<Real> length;
+  std::vector<int> joint_at;
+  int blocks() const { return static_cast<int>(law_of_block.size()); }
   JointPlaces<Real> places() const {
     return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), law_of_block.data()};
   }
@@ -77,13 +80,13 @@ struct JointList {
 
 template <class Real>
 struct Scratch {
-  JointList<Real> springs;               // all joints, without length where they are followed
+  JointList<Real> springs;               // without length where they were followed since joints were last settled
   Field<Real> reach;                     // of springs
   std::vector<unsigned char> stretched;  // by block of springs
-  JointList<Real> followed;              // by places in the blocks of followed joints
-  Field<Real> along;
+  JointList<Real> followed;
+  Field<Real> along, kept;                // of followed joints: as in View
   std::vector<unsigned char> breaks;      // by block of followed joints
-  std::vector<int> joint_at, place_of;    // joint of a place, -1: a pad; place of a joint, -1: a spring
+  std::vector<int> place_of, spring_of;   // place of a joint among the followed ones, -1: a spring; and among the springs
   std::vector<int> free_place;            // by law: next place in its last block, a multiple of `lanes` where that is full
   Field<Real> rows;                       // of u
   Field<Real> told_velocity, told_force;  // of the told blocks
@@ -99,10 +102,6 @@ Model<Real> make_model(const Plan& plan, const Body& body);
 // At t = 0: displacements and velocities of the body, no damage but where the plan has pads.
 template <class Real>
 State<Real> make_state(const Plan& plan, const Model<Real>& model, const Body& body);
-
-// From now on the joint is followed, undamaged, as it would be had it opened straight to where it is (both ends, m).
-template <class Real>
-void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening);
 
 template <class Real>
 Scratch<Real> make_scratch(const Plan& plan, const Model<Real>& model, const Body& body);

@@ -43,6 +43,11 @@ struct Plan {
   int corner_of(Corner corner) const { return 3 * slot_of[static_cast<std::size_t>(corner / 3)] + corner % 3; }
 };
 
+// Where number i of the `numbers` of a place lies in arrays [block][numbers][lane].
+constexpr std::size_t in_block(std::size_t place, std::size_t numbers, std::size_t i) {
+  return (place / lanes * numbers + i) * lanes + place % lanes;
+}
+
 // Where a number of corner 3 slot + k, axis 0 (x) or 1 (z), lies in arrays [block][corner_count][lane].
 inline std::size_t at_corner(int corner, int axis) {
   const int slot = corner / 3, k = corner % 3;

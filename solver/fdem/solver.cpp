@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/fdem/followed.hpp"
 #include "solver/fdem/materials.hpp"
 #include "solver/fdem/stable_step.hpp"
 
@@ -56,7 +57,7 @@ View<Real> Fdem<Real>::view() const {
   v.springs = scratch_.springs.places(), v.followed = scratch_.followed.places();
   v.reach = scratch_.reach.data(), v.stretched = scratch_.stretched.data();
   v.along = scratch_.along.data(), v.breaks = scratch_.breaks.data();
-  v.damage = s.damage.data(), v.opening = s.opening.data(), v.force = s.force.data();
+  v.damage = s.damage.data(), v.kept = scratch_.kept.data(), v.opening = s.opening.data(), v.force = s.force.data();
   v.joint_laws = model_.joint_laws.data();
   v.curve = curve_of(settings_);
   v.always_flow = !rules_.flow_where_it_yields;
@@ -91,10 +92,11 @@ TriangleSums Fdem<Real>::measure(double dt) const {
 template <class Real>
 void Fdem<Real>::join(double time) {
   const View<Real> before = view();
-  in_chunks<char>(plan_.joint_blocks(), threads_, [&](Blocks blocks) { return kernels_.join(before, blocks), '\0'; });
+  in_chunks<char>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.join(before, blocks), '\0'; });
   follow_stretched();
   const View<Real> v = view();
-  for (const double lost : in_chunks<double>(followed_blocks(), threads_, [&](Blocks blocks) { return kernels_.follow(v, blocks); }))
+  for (const double lost :
+       in_chunks<double>(scratch_.followed.blocks(), threads_, [&](Blocks blocks) { return kernels_.follow(v, blocks); }))
     state_.ledger.fracture += lost;
   note_breaks(time);
 }
@@ -103,7 +105,8 @@ template <class Real>
 double Fdem<Real>::stored_in_joints() const {
   const View<Real> v = view();
   double sum = 0.0;
-  for (const double part : in_chunks<double>(plan_.joint_blocks(), threads_, [&](Blocks blocks) { return kernels_.stored(v, blocks); }))
+  for (const double part :
+       in_chunks<double>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.stored(v, blocks); }))
     sum += part;
   double followed = 0.0;
   for (Index i = 0; i < state_.force.size(); ++i) followed += static_cast<double>(state_.force[i]) * static_cast<double>(state_.opening[i]);
@@ -223,7 +226,7 @@ std::vector<float> Fdem<Real>::stored_damage() const {
     if (joint < 0) continue;
     const int place = scratch_.place_of[static_cast<Index>(joint)];
     if (place < 0) continue;
-    const Index at = static_cast<Index>((place / lanes) * 2 * lanes + place % lanes);
+    const Index at = in_block(static_cast<Index>(place), 2, 0);
     damage[edge] = static_cast<float>(Real(0.5) * (state_.damage[at] + state_.damage[at + lanes]));
   }
   return damage;
@@ -233,7 +236,7 @@ template <class Real>
 void Fdem<Real>::save(ArchiveWriter& archive) const {
   const State<Real>& s = state_;
   for (const Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.extra}) archive.put_array(*field);
-  archive.put_array(s.followed);
+  archive.put_array(s.followed), archive.put(s.settled);
   for (const Field<Real>* field : {&s.damage, &s.opening, &s.force}) archive.put_array(*field);
   archive.put_array(s.break_time), archive.put_array(s.break_mode);
   archive.put_array(s.exposed), archive.put(s.cracks_exposed);
@@ -250,8 +253,10 @@ bool Fdem<Real>::load(ArchiveReader& archive, long long n, double dt) {
   for (Field<Real>* field : {&s.u, &s.v, &s.slots, &s.plastic, &s.extra}) archive.get_array_like(*field);
   std::vector<int> followed;
   archive.get_array(followed);
-  if (archive.failed() || !follow_again(followed)) return false;
+  const int settled = archive.get<int>();
+  if (archive.failed() || !follow_again(plan_, s, scratch_, followed, settled)) return false;
   for (Field<Real>* field : {&s.damage, &s.opening, &s.force}) archive.get_array_like(*field);
+  set_kept(s, scratch_, curve_of(settings_));
   archive.get_array_like(s.break_time), archive.get_array_like(s.break_mode);
   archive.get_array(s.exposed), s.cracks_exposed = archive.get<unsigned char>();
   s.ledger = archive.get<Ledger>();

@@ -60,10 +60,8 @@ class Fdem final : public MeshSimulation {
   Powers power_of_told(double dt) const;
   double power_of_pulls(double time) const;
   BreakMode mode_of(int joint) const;
-  int followed_blocks() const { return static_cast<int>(scratch_.breaks.size()); }
   std::array<Real, 4> opening_of(int joint) const;
   void follow_stretched();
-  bool follow_again(const std::vector<int>& joints);
   double stored_in_joints() const;
   std::array<double, 4> reactions(double dt) const;
 

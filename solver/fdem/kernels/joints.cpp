@@ -29,51 +29,61 @@ struct Vector {
 
 inline constexpr double near = 0.5 + 0.28867513459481287, far = 0.5 - 0.28867513459481287;  // Gauss points: weights of the ends
 
-struct Point {
-  Lanes damage;
-  Vector traction;
+// Halfway between both sides of the edge, from its first node to its second, and the square of its length.
+struct Line {
+  Lanes x, z, square;
 };
 
-template <class Curve>
-INLINE Point at_point(const Joint& law, const Vector& along, const Vector& opening, Lanes damage) {
-  const law::Opening<Lanes> parts{opening.x * along.z - opening.z * along.x, opening.x * along.x + opening.z * along.z};
-  const auto answer = law::answer<Curve>(law, parts, damage);
-  return {answer.damage, {answer.normal * along.z + answer.shear * along.x, answer.shear * along.z - answer.normal * along.x}};
+// One of the two points of an edge. The opening is times the length of the line, so that nothing need be made a unit vector.
+struct Point {
+  law::Opening<Lanes> opening;
+  law::Extent<Lanes> size;
+  Lanes r, damage, kept;
+};
+
+INLINE Point point_of(const Joint& law, const Line& line, const Vector& opening, Lanes damage, Lanes kept) {
+  const law::Opening<Lanes> parts{opening.x * line.z - opening.z * line.x, opening.x * line.x + opening.z * line.z};
+  const law::Extent<Lanes> size = law::extent(law, parts);
+  return {parts, size, law::brittleness(size), damage, kept};
 }
 
-struct Answer {
-  Ends force;
-  Lanes damage_0, damage_1;
-  Mask damaged, breaks;
-};
+INLINE Mask grows(const Line& line, const Point& p) {
+  const Lanes w = law::level(p.r, p.damage);
+  return (p.size.rupture > w * w * line.square) & (Lanes(Real(1)) > p.damage);
+}
 
-// Forces of the left triangle at both ends, with damage. `along` is the unit tangent of the line midway.
 template <class Curve>
-INLINE Answer follow_ends(const Joint& law, const Vector& along, Lanes length, const Ends& opening, Lanes damage_0, Lanes damage_1) {
-  const Lanes w(near), x(far);
-  const Point p = at_point<Curve>(law, along, {w * opening.ax + x * opening.bx, w * opening.az + x * opening.bz}, damage_0);
-  const Point q = at_point<Curve>(law, along, {x * opening.ax + w * opening.bx, x * opening.az + w * opening.bz}, damage_1);
-  const Lanes half = Lanes(Real(0.5)) * length, zero(Real(0)), one(Real(1));
-  const Mask whole = one > smaller(p.damage, q.damage), was_whole = one > smaller(damage_0, damage_1);
+INLINE void grow(const Line& line, Mask where, Point& p) {
+  p.damage = select(where, law::grown(p.r, sqrt(p.size.rupture / line.square), p.damage), p.damage);
+  p.kept = select(where, law::kept<Curve>(p.damage), p.kept);
+}
+
+// On the left side.
+INLINE Vector traction(const Joint& law, const Line& line, const Point& p) {
+  const Lanes w = law::level(p.r, p.damage), stiff = law.penalty / (w * line.square), soft = p.kept * p.r * stiff;
+  const Lanes n = select(p.opening.n > Lanes(Real(0)), soft, w * stiff) * p.opening.n, t = soft * p.opening.t;
+  return {n * line.z + t * line.x, t * line.z - n * line.x};
+}
+
+// Forces of the left side at both ends of edges that are not broken.
+INLINE Ends ends_of(Mask whole, Lanes length, const Vector& p, const Vector& q) {
+  const Lanes half = Lanes(Real(0.5)) * length, zero(Real(0)), w(near), x(far);
   const auto end = [&](Lanes near_t, Lanes far_t) __attribute__((always_inline)) {
     return select(whole, half * (w * near_t + x * far_t), zero);
   };
-  const Ends force{end(p.traction.x, q.traction.x), end(p.traction.z, q.traction.z), end(q.traction.x, p.traction.x),
-                   end(q.traction.z, p.traction.z)};
-  return {force, p.damage, q.damage, larger(p.damage, q.damage) > zero, was_whole & ~whole};
+  return {end(p.x, q.x), end(p.z, q.z), end(q.x, p.x), end(q.z, p.z)};
 }
 
 struct Sides {
   Lanes4 left, right;  // displacements: left from a to b, right from b to a
 };
 
-INLINE Vector midline(const View& view, int b, int s, const Sides& u) {
+INLINE Line midline(const View& view, int b, int s, const Sides& u) {
   const Real* at = view.along + Index(b) * 2 * lanes + s * width;
   const Lanes half(Real(0.5));
   const Lanes x = load(at) + half * ((u.left.c - u.left.a) + (u.right.a - u.right.c));
   const Lanes z = load(at + lanes) + half * ((u.left.d - u.left.b) + (u.right.b - u.right.d));
-  const Lanes per_length = Lanes(Real(1)) / sqrt(x * x + z * z);
-  return {x * per_length, z * per_length};
+  return {x, z, x * x + z * z};
 }
 
 INLINE Joint wide(const law::Joint<Real>& joint) {
@@ -109,25 +119,39 @@ INLINE Ends spring_force(Lanes spring, const Ends& o) {
   return {spring * (o.ax + x), spring * (o.az + z), spring * (o.bx + x), spring * (o.bz + z)};
 }
 
-// One register of followed joints. The work that is gone in a step is 1/2 (f0 delta1 - f1 delta0): the trapezoidal work less the growth of
-// what is stored.
+INLINE Mask is_whole(const Point& p, const Point& q) { return Lanes(Real(1)) > smaller(p.damage, q.damage); }
+
+// One register of followed joints; true if one of them broke. The work that is gone in a step is 1/2 (f0 delta1 - f1 delta0): the
+// trapezoidal work less the growth of what is stored. Most joints are not damaged further in a step: the curve is for those that are.
 template <class Curve>
 INLINE bool follow_part(const View& view, int b, int s, LaneSums& gone) {
   const Joint law = wide(view.joint_laws[view.followed.law_of_block[b]]);
   const Sides u = load_sides(view, view.followed, b, s);
-  const Ends opening = opening_between(u);
-  Real* damage = view.damage + Index(b) * 2 * lanes + s * width;
-  Real* opening_at = view.opening + Index(b) * 4 * lanes + s * width;
-  Real* force_at = view.force + Index(b) * 4 * lanes + s * width;
-  const Lanes length = load(view.followed.length + Index(b) * lanes + s * width), zero(Real(0)), half(Real(0.5));
-  const Answer now = follow_ends<Curve>(law, midline(view, b, s, u), length, opening, load(damage), load(damage + lanes));
-  const Ends force = choose(now.damaged, now.force, spring_force(spring_of(view, view.followed, b, s), opening));
-  const Lanes lost = half * (dot(load_ends(force_at), opening) - dot(force, load_ends(opening_at)));
-  gone.part[s] = gone.part[s] + select(now.damaged, lost, zero);
-  store(damage, now.damage_0), store(damage + lanes, now.damage_1);
-  store_ends(opening_at, opening), store_ends(force_at, force);
+  const Ends o = opening_between(u);
+  const Line line = midline(view, b, s, u);
+  Real *damage = view.damage + Index(b) * 2 * lanes + s * width, *kept = view.kept + Index(b) * 2 * lanes + s * width;
+  const Lanes w(near), x(far), zero(Real(0)), half(Real(0.5));
+  Point p = point_of(law, line, {w * o.ax + x * o.bx, w * o.az + x * o.bz}, load(damage), load(kept));
+  Point q = point_of(law, line, {x * o.ax + w * o.bx, x * o.az + w * o.bz}, load(damage + lanes), load(kept + lanes));
+  const Mask p_grows = grows(line, p), q_grows = grows(line, q);
+  bool breaks = false;
+  if (any(p_grows | q_grows)) {
+    const Mask was_whole = is_whole(p, q);
+    grow<Curve>(line, p_grows, p), grow<Curve>(line, q_grows, q);
+    store(damage, p.damage), store(damage + lanes, q.damage);
+    store(kept, p.kept), store(kept + lanes, q.kept);
+    breaks = any(was_whole & ~is_whole(p, q));
+  }
+  const Mask damaged = larger(p.damage, q.damage) > zero;
+  const Lanes length = load(view.followed.length + Index(b) * lanes + s * width);
+  const Ends softened = ends_of(is_whole(p, q), length, traction(law, line, p), traction(law, line, q));
+  const Ends force = choose(damaged, softened, spring_force(spring_of(view, view.followed, b, s), o));
+  Real *opening_at = view.opening + Index(b) * 4 * lanes + s * width, *force_at = view.force + Index(b) * 4 * lanes + s * width;
+  const Lanes lost = half * (dot(load_ends(force_at), o) - dot(force, load_ends(opening_at)));
+  gone.part[s] = gone.part[s] + select(damaged, lost, zero);
+  store_ends(opening_at, o), store_ends(force_at, force);
   store_sides(view, view.followed, b, s, force);
-  return any(now.breaks);
+  return breaks;
 }
 
 template <class Curve>

@@ -1,0 +1,173 @@
+#include "solver/fdem/followed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fracfarm::fdem {
+namespace {
+
+using Index = std::size_t;
+
+int law_of(const Plan& plan, int joint) { return plan.joint_law_of_block[static_cast<Index>(joint / lanes)]; }
+
+// m^2: a spring that opens further at an end is followed.
+template <class Real>
+Real reach_of(const Plan& plan, int joint) {
+  const auto& law = plan.joint_laws[static_cast<Index>(law_of(plan, joint))];
+  const double onset = 1.0 / std::max(law.per_onset_n, law.per_onset_t);
+  return static_cast<Real>(onset * onset);
+}
+
+// Pads have no length and lie between the two spare triangles behind the last.
+template <class Real>
+void add_block_of_pads(const Plan& plan, JointList<Real>& list, int law) {
+  const int spare = 3 * plan.slots;
+  const auto add = [](std::vector<int>& values, int value) { values.insert(values.end(), lanes, value); };
+  add(list.left_row, row_of_side(spare)), add(list.right_row, row_of_side(spare + 3));
+  add(list.left_slot, 4 * spare), add(list.right_slot, 4 * (spare + 3));
+  add(list.joint_at, -1);
+  list.length.insert(list.length.end(), lanes, Real(0));
+  list.law_of_block.push_back(law);
+}
+
+template <class Real>
+void put(const Plan& plan, JointList<Real>& list, Index place, int joint) {
+  const Index j = static_cast<Index>(joint);
+  list.left_row[place] = plan.left_row[j], list.right_row[place] = plan.right_row[j];
+  list.left_slot[place] = plan.left_slot[j], list.right_slot[place] = plan.right_slot[j];
+  list.length[place] = static_cast<Real>(plan.length[j]);
+  list.joint_at[place] = joint;
+}
+
+template <class Real>
+void add_followed_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
+  add_block_of_pads(plan, scratch.followed, law);
+  scratch.along.insert(scratch.along.end(), lanes, Real(1)), scratch.along.insert(scratch.along.end(), lanes, Real(0));
+  scratch.breaks.push_back(0);
+  scratch.kept.insert(scratch.kept.end(), 2 * lanes, Real(1));
+  state.damage.insert(state.damage.end(), 2 * lanes, Real(0));
+  state.opening.insert(state.opening.end(), 4 * lanes, Real(0)), state.force.insert(state.force.end(), 4 * lanes, Real(0));
+}
+
+// The place of a joint in the last block of its law, or in a new one.
+template <class Real>
+Index take_place(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint) {
+  const Index j = static_cast<Index>(joint);
+  int& free_place = scratch.free_place[static_cast<Index>(law_of(plan, joint))];
+  if (free_place % lanes == 0) {
+    free_place = static_cast<int>(scratch.followed.joint_at.size());
+    add_followed_block(plan, state, scratch, law_of(plan, joint));
+  }
+  const Index place = static_cast<Index>(free_place++);
+  put(plan, scratch.followed, place, joint);
+  state.followed.push_back(joint), scratch.place_of[j] = static_cast<int>(place);
+  for (Index axis = 0; axis < 2; ++axis) scratch.along[in_block(place, 2, axis)] = static_cast<Real>(plan.along[in_block(j, 2, axis)]);
+  return place;
+}
+
+template <class Real>
+void forget_places(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
+  state.followed.clear(), state.damage.clear(), state.opening.clear(), state.force.clear();
+  scratch.followed = {}, scratch.along.clear(), scratch.kept.clear(), scratch.breaks.clear();
+  scratch.free_place.assign(plan.joint_laws.size(), 0);
+}
+
+template <class Real>
+void copy(const Field<Real>& from, Index old_place, Field<Real>& to, Index place, Index numbers) {
+  for (Index i = 0; i < numbers; ++i) to[in_block(place, numbers, i)] = from[in_block(old_place, numbers, i)];
+}
+
+}  // namespace
+
+template <class Real>
+void set_springs(const Plan& plan, Scratch<Real>& scratch) {
+  scratch.springs = {}, scratch.reach.clear();
+  scratch.spring_of.assign(static_cast<Index>(plan.joints), -1);
+  Index next = 0;
+  for (int joint = 0; joint < plan.joints; ++joint) {
+    const Index j = static_cast<Index>(joint);
+    if (plan.edge_of[j] < 0 || scratch.place_of[j] >= 0) continue;
+    const int law = law_of(plan, joint);
+    if (scratch.springs.law_of_block.empty() || scratch.springs.law_of_block.back() != law) next = scratch.springs.joint_at.size();
+    if (next == scratch.springs.joint_at.size()) {
+      add_block_of_pads(plan, scratch.springs, law);
+      scratch.reach.insert(scratch.reach.end(), lanes, std::numeric_limits<Real>::max());
+    }
+    put(plan, scratch.springs, next, joint);
+    scratch.reach[next] = reach_of<Real>(plan, joint);
+    scratch.spring_of[j] = static_cast<int>(next++);
+  }
+  scratch.stretched.assign(scratch.springs.law_of_block.size(), 0);
+}
+
+template <class Real>
+void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening) {
+  const Index j = static_cast<Index>(joint), place = take_place(plan, state, scratch, joint);
+  const auto& law = plan.joint_laws[static_cast<Index>(law_of(plan, joint))];
+  const double furthest = std::max(std::hypot(opening[0], opening[1]), std::hypot(opening[2], opening[3]));
+  const double scale = 1.0 / std::max(1.0, furthest * std::max(law.per_onset_n, law.per_onset_t)),
+               spring = law.penalty * plan.length[j] / 6.0;
+  for (Index i = 0; i < 4; ++i) {
+    state.opening[in_block(place, 4, i)] = static_cast<Real>(scale * opening[i]);
+    state.force[in_block(place, 4, i)] = static_cast<Real>(scale * spring * (2.0 * opening[i] + opening[(i + 2) % 4]));
+  }
+  const Index at = static_cast<Index>(scratch.spring_of[j]);
+  scratch.springs.length[at] = Real(0), scratch.reach[at] = std::numeric_limits<Real>::max();
+}
+
+template <class Real>
+bool is_unsettled(const State<Real>& state) {
+  const Index settled = static_cast<Index>(state.settled);
+  return state.followed.size() > settled + settled / 16 + 64;
+}
+
+template <class Real>
+void settle(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
+  std::vector<int> joints = state.followed;
+  std::sort(joints.begin(), joints.end());
+  const std::vector<int> old_place = scratch.place_of;
+  const Field<Real> damage = state.damage, kept = scratch.kept, opening = state.opening, force = state.force;
+  forget_places(plan, state, scratch);
+  for (const int joint : joints) {
+    const Index old = static_cast<Index>(old_place[static_cast<Index>(joint)]), place = take_place(plan, state, scratch, joint);
+    copy(damage, old, state.damage, place, 2), copy(kept, old, scratch.kept, place, 2);
+    copy(opening, old, state.opening, place, 4), copy(force, old, state.force, place, 4);
+  }
+  state.settled = static_cast<int>(joints.size());
+  set_springs(plan, scratch);
+}
+
+template <class Real>
+bool follow_again(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, const std::vector<int>& joints, int settled) {
+  if (settled < 0 || static_cast<Index>(settled) > joints.size()) return false;
+  for (const int joint : joints) {
+    const bool known = joint >= 0 && joint < plan.joints && plan.edge_of[static_cast<Index>(joint)] >= 0;
+    if (!known || scratch.place_of[static_cast<Index>(joint)] >= 0) return false;
+    if (state.followed.size() == static_cast<Index>(settled)) set_springs(plan, scratch);
+    follow(plan, state, scratch, joint, {});
+  }
+  if (joints.size() == static_cast<Index>(settled)) set_springs(plan, scratch);
+  state.settled = settled;
+  return true;
+}
+
+template <class Real>
+void set_kept(const State<Real>& state, Scratch<Real>& scratch, Curve curve) {
+  std::transform(state.damage.begin(), state.damage.end(), scratch.kept.begin(), [&](Real damage) {
+    return curve == Curve::munjiza ? law::kept<law::Munjiza>(damage) : law::kept<law::LinearSoftening>(damage);
+  });
+}
+
+#define FRACFARM_INSTANTIATE(Real)                                                                     \
+  template void set_springs(const Plan&, Scratch<Real>&);                                              \
+  template void follow(const Plan&, State<Real>&, Scratch<Real>&, int, const std::array<double, 4>&);  \
+  template bool is_unsettled(const State<Real>&);                                                      \
+  template void settle(const Plan&, State<Real>&, Scratch<Real>&);                                     \
+  template bool follow_again(const Plan&, State<Real>&, Scratch<Real>&, const std::vector<int>&, int); \
+  template void set_kept(const State<Real>&, Scratch<Real>&, Curve);
+FRACFARM_INSTANTIATE(double)
+FRACFARM_INSTANTIATE(float)
+#undef FRACFARM_INSTANTIATE
+
+}  // namespace fracfarm::fdem
