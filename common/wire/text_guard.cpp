@@ -1,6 +1,8 @@
 #include "common/wire/text_guard.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 namespace fracfarm::wire {
 namespace {
@@ -25,17 +27,33 @@ std::size_t character_length(std::string_view text) {
   return 0;
 }
 
+// Of the ASCII at the start, by whole words of 8 bytes: most texts are nothing else.
+std::size_t ascii_length(std::string_view text) {
+  std::size_t at = 0;
+  for (std::uint64_t word = 0; text.size() - at >= sizeof word; at += sizeof word) {
+    std::memcpy(&word, text.data() + at, sizeof word);
+    if (word & 0x8080808080808080ull) break;
+  }
+  return at;
+}
+
 bool is_control(char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F; }
 
 }  // namespace
 
 bool is_utf8(std::string_view text) {
+  text.remove_prefix(ascii_length(text));
   while (!text.empty()) {
     const std::size_t length = character_length(text);
     if (length == 0) return false;
     text.remove_prefix(length);
   }
   return true;
+}
+
+bool is_clean(std::string_view text, std::size_t limit) {
+  return text.size() <= limit &&
+         std::all_of(text.begin(), text.end(), [](char c) { return static_cast<signed char>(c) >= 0 && !is_control(c); });
 }
 
 std::string clean_text(std::string_view text, std::size_t limit) {

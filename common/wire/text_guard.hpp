@@ -7,6 +7,7 @@
 namespace fracfarm::wire {
 
 bool is_utf8(std::string_view text);
+bool is_clean(std::string_view text, std::size_t limit);  // clean_text would give it back; may say no of clean text beyond ASCII
 // The text with invalid bytes and control characters (other than newline) as '?', clipped to `limit` bytes at a whole character.
 std::string clean_text(std::string_view text, std::size_t limit);
 

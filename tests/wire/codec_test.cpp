@@ -91,6 +91,11 @@ TEST_CASE("a wrong value is named by its path") {
     envelope["body"]["haste"] = 1;
     CHECK(refusal_of(envelope) == "next has unknown keys");
   }
+  SECTION("a key nobody knows in place of one that belongs there") {
+    envelope["body"].erase("free_slots");
+    envelope["body"]["haste"] = 1;
+    CHECK(refusal_of(envelope) == "next has unknown keys");
+  }
   SECTION("over-long text") {
     envelope["body"]["completed"][0]["shard"] = std::string(300, 'x');
     CHECK(refusal_of(envelope) == "next.completed[0].shard is 300 bytes long; the limit is 256");
@@ -99,6 +104,20 @@ TEST_CASE("a wrong value is named by its path") {
     envelope["body"]["completed"][0]["shard"] = "\xC0\x80";
     CHECK(refusal_of(envelope) == "next.completed[0].shard is not UTF-8");
   }
+}
+
+TEST_CASE("keys come in any order, and none twice") {
+  const Request next = sample_requests()[1];
+  const auto sorted = decode_request(pack(envelope_of(next)));  // a tree of JSON sorts them
+  REQUIRE(sorted.has_value());
+  CHECK(encode(*sorted) == encode(RequestEnvelope{3, next}));
+  std::string twice(
+      "\x84\xA1v\x01\xA2id\x05\xA4kind\xA3"
+      "bye\xA4"
+      "body\x81\xA8returned\x91\x82\xA5"
+      "epoch\x01\xA5"
+      "epoch\x02");
+  CHECK(decode_request(twice).error().message == "bye.returned[0].epoch is given twice");
 }
 
 TEST_CASE("a list beyond its limit is refused") {

@@ -3,44 +3,11 @@
 
 #include "common/base/random.hpp"
 #include "common/wire/codec.hpp"
+#include "tests/wire/mutants.hpp"
 #include "tests/wire/samples.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::wire;
-
-namespace {
-
-std::string noise(RandomStream& random) {
-  std::string bytes(static_cast<std::size_t>(random.integer(0, 300)), '\0');
-  for (char& c : bytes) c = static_cast<char>(random.integer(0, 255));
-  return bytes;
-}
-
-std::string mutated(std::string bytes, RandomStream& random) {
-  for (int edits = random.integer(1, 4); edits > 0 && !bytes.empty(); --edits) {
-    const auto at = static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()) - 1));
-    switch (random.integer(0, 4)) {
-      case 0:
-        bytes[at] = static_cast<char>(random.integer(0, 255));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.integer(0, 7)));
-        break;
-      case 2:
-        bytes.resize(at);
-        break;
-      case 3:
-        bytes.insert(at, bytes.substr(at / 2, 16));
-        break;
-      default:
-        bytes.erase(at, 8);
-        break;
-    }
-  }
-  return bytes;
-}
-
-}  // namespace
 
 TEST_CASE("20,000 hostile frames neither throw nor crash, and what is accepted reads back the same") {
   RandomStream random(2026, 7, 1);
@@ -50,8 +17,7 @@ TEST_CASE("20,000 hostile frames neither throw nor crash, and what is accepted r
   int accepted = 0;
   int unstable = 0;
   for (int i = 0; i < 20'000; ++i) {
-    const auto seed = static_cast<std::size_t>(random.integer(0, static_cast<int>(seeds.size()) - 1));
-    const std::string bytes = random.integer(0, 9) == 0 ? noise(random) : mutated(seeds[seed], random);
+    const std::string bytes = test::any_bytes(seeds, random);
     if (const auto request = decode_request(bytes)) {
       ++accepted;
       const auto again = decode_request(encode(*request));
