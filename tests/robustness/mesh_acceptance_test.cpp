@@ -83,3 +83,17 @@ TEST_CASE("a run past its step's edge that sheds the energy into its joints brea
           at(r, "fracture_energy", 40) -= 2.0 * at(r, "external_work", 40);
         }) == "ledger_closed");
 }
+
+TEST_CASE("a body has failed only where a joint broke by then or has little of its strength left") {
+  const auto failed_early = [](float softened) {
+    return broken_by([&](RunResult& r) {
+      std::size_t joint = 0;
+      while (mesh_of(r).mesh.edge_kind[joint] != EdgeKind::joint) ++joint;
+      r.judgement = {Verdict::failed, r.series["step_time"][20], "five_step", 1.0};
+      r.damage_failure = r.damage_initial;
+      r.damage_failure[joint] = softened;
+    });
+  };
+  CHECK(failed_early(0.2f) == "time_to_failure");
+  CHECK(failed_early(0.7f).empty());
+}
