@@ -23,23 +23,34 @@ void Fdem<Real>::measure_cracks() {
     if (body_.mesh.edge_kind[edge] == EdgeKind::crack) state_.ledger.crack_length += edge_length(body_.mesh, edge);
 }
 
-// Right triangle less left one at both ends of the edge, m.
+// Displacements of both sides.
 template <class Real>
-std::array<Real, 4> Fdem<Real>::opening_of(int joint) const {
-  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[static_cast<Index>(joint)])],
-             *right = &scratch_.rows[static_cast<Index>(plan_.right_row[static_cast<Index>(joint)])];
-  return {right[2] - left[0], right[3] - left[1], right[0] - left[2], right[1] - left[3]};
+law::Ends<Real> Fdem<Real>::side_at(int row) const {
+  const Real* u = &scratch_.rows[static_cast<Index>(row)];
+  return {u[0], u[1], u[2], u[3]};
 }
 
 template <class Real>
-void Fdem<Real>::follow_stretched() {
-  for (Index b = 0; b < scratch_.stretched.size(); ++b) {
-    if (!scratch_.stretched[b]) continue;
+EdgeNow<Real> Fdem<Real>::edge_now(int joint) const {
+  const Index j = static_cast<Index>(joint);
+  const law::Vector<Real> along{static_cast<Real>(plan_.along[in_block(j, 2, 0)]), static_cast<Real>(plan_.along[in_block(j, 2, 1)])};
+  const law::Ends<Real> left = side_at(plan_.left_row[j]), right = side_at(plan_.right_row[j]);
+  return {law::opening_between(left, right), law::midline(along, left, right)};
+}
+
+// A spring that softens is followed, as one that opened straight to where it is.
+template <class Real>
+void Fdem<Real>::follow_what_softens() {
+  for (Index b = 0; b < scratch_.softens.size(); ++b) {
+    if (!scratch_.softens[b]) continue;
+    const law::Joint<Real>& law = model_.joint_laws[static_cast<Index>(scratch_.springs.law_of_block[b])];
     for (Index place = b * lanes; place < (b + 1) * lanes; ++place) {
       const int joint = scratch_.springs.joint_at[place];
-      if (joint < 0) continue;
-      const auto [ax, az, bx, bz] = opening_of(joint);
-      if (std::max(ax * ax + az * az, bx * bx + bz * bz) > scratch_.reach[place]) follow(plan_, state_, scratch_, joint, {ax, az, bx, bz});
+      if (joint < 0 || scratch_.springs.length[place] == Real(0)) continue;
+      const auto [opening, line] = edge_now(joint);
+      if (!law::overstretched(law, opening, line)) continue;
+      const double lambda = std::sqrt(static_cast<double>(law::largest_stretch(law, opening, line) / line.square));
+      follow(plan_, state_, scratch_, joint, {opening.ax / lambda, opening.az / lambda, opening.bx / lambda, opening.bz / lambda});
     }
   }
   if (is_unsettled(state_)) settle(plan_, state_, scratch_);
@@ -101,28 +112,24 @@ bool Fdem<Real>::a_crack_closes() const {
 // By the shares of opening and sliding, each of what breaks the joint alone, in their squares: three quarters of one name it.
 template <class Real>
 BreakMode Fdem<Real>::mode_of(int joint) const {
-  const Index j = static_cast<Index>(joint), line = static_cast<Index>((joint / lanes) * 2 * lanes + joint % lanes);
-  const Real *left = &scratch_.rows[static_cast<Index>(plan_.left_row[j])], *right = &scratch_.rows[static_cast<Index>(plan_.right_row[j])];
-  double x = plan_.along[line], z = plan_.along[line + lanes];
-  x += 0.5 * ((double(left[2]) - left[0]) + (double(right[0]) - right[2]));
-  z += 0.5 * ((double(left[3]) - left[1]) + (double(right[1]) - right[3]));
-  const auto [ax, az, bx, bz] = opening_of(joint);
+  const auto [opening, line] = edge_now(joint);
   const auto& law = plan_.joint_laws[static_cast<Index>(plan_.joint_law_of_block[static_cast<Index>(joint / lanes)])];
   double opens = 0.0, slides = 0.0;
-  for (const auto& [dx, dz] : {std::array<double, 2>{ax, az}, std::array<double, 2>{bx, bz}}) {
-    const double n = std::max(0.0, dx * z - dz * x) * law.per_rupture_n, t = (dx * x + dz * z) * law.per_rupture_t;
+  for (const law::Vector<Real>& end : {law::Vector<Real>{opening.ax, opening.az}, law::Vector<Real>{opening.bx, opening.bz}}) {
+    const law::Opening<Real> parts = law::parts_of(end, line);
+    const double n = std::max(0.0, static_cast<double>(parts.n)) * law.per_rupture_n, t = static_cast<double>(parts.t) * law.per_rupture_t;
     opens += n * n, slides += t * t;
   }
   const double share = opens / std::max(opens + slides, 1e-300);
   return share >= 0.75 ? BreakMode::tension : share <= 0.25 ? BreakMode::shear : BreakMode::mixed;
 }
 
-#define FRACFARM_INSTANTIATE(Real)               \
-  template void Fdem<Real>::measure_cracks();    \
-  template void Fdem<Real>::note_breaks(double); \
-  template void Fdem<Real>::follow_stretched();  \
-  template void Fdem<Real>::expose(int);         \
-  template void Fdem<Real>::watch_side(int);     \
+#define FRACFARM_INSTANTIATE(Real)                 \
+  template void Fdem<Real>::measure_cracks();      \
+  template void Fdem<Real>::note_breaks(double);   \
+  template void Fdem<Real>::follow_what_softens(); \
+  template void Fdem<Real>::expose(int);           \
+  template void Fdem<Real>::watch_side(int);       \
   template void Fdem<Real>::expose_cracks_that_close();
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

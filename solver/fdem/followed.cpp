@@ -1,7 +1,7 @@
 #include "solver/fdem/followed.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 
 namespace fracfarm::fdem {
@@ -11,7 +11,7 @@ using Index = std::size_t;
 
 int law_of(const Plan& plan, int joint) { return plan.joint_law_of_block[static_cast<Index>(joint / lanes)]; }
 
-// m^2: a spring that opens further at an end is followed.
+// m^2: a spring that opens less at both ends does not soften.
 template <class Real>
 Real reach_of(const Plan& plan, int joint) {
   const auto& law = plan.joint_laws[static_cast<Index>(law_of(plan, joint))];
@@ -28,6 +28,7 @@ void add_block_of_pads(const Plan& plan, JointList<Real>& list, int law) {
   add(list.left_slot, 4 * spare), add(list.right_slot, 4 * (spare + 3));
   add(list.joint_at, -1);
   list.length.insert(list.length.end(), lanes, Real(0));
+  list.along.insert(list.along.end(), lanes, Real(1)), list.along.insert(list.along.end(), lanes, Real(0));
   list.law_of_block.push_back(law);
 }
 
@@ -37,13 +38,13 @@ void put(const Plan& plan, JointList<Real>& list, Index place, int joint) {
   list.left_row[place] = plan.left_row[j], list.right_row[place] = plan.right_row[j];
   list.left_slot[place] = plan.left_slot[j], list.right_slot[place] = plan.right_slot[j];
   list.length[place] = static_cast<Real>(plan.length[j]);
+  for (Index axis = 0; axis < 2; ++axis) list.along[in_block(place, 2, axis)] = static_cast<Real>(plan.along[in_block(j, 2, axis)]);
   list.joint_at[place] = joint;
 }
 
 template <class Real>
 void add_followed_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
   add_block_of_pads(plan, scratch.followed, law);
-  scratch.along.insert(scratch.along.end(), lanes, Real(1)), scratch.along.insert(scratch.along.end(), lanes, Real(0));
   scratch.breaks.push_back(0);
   scratch.kept.insert(scratch.kept.end(), 2 * lanes, Real(1));
   state.damage.insert(state.damage.end(), 2 * lanes, Real(0));
@@ -62,14 +63,13 @@ Index take_place(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, i
   const Index place = static_cast<Index>(free_place++);
   put(plan, scratch.followed, place, joint);
   state.followed.push_back(joint), scratch.place_of[j] = static_cast<int>(place);
-  for (Index axis = 0; axis < 2; ++axis) scratch.along[in_block(place, 2, axis)] = static_cast<Real>(plan.along[in_block(j, 2, axis)]);
   return place;
 }
 
 template <class Real>
 void forget_places(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
   state.followed.clear(), state.damage.clear(), state.opening.clear(), state.force.clear();
-  scratch.followed = {}, scratch.along.clear(), scratch.kept.clear(), scratch.breaks.clear();
+  scratch.followed = {}, scratch.kept.clear(), scratch.breaks.clear();
   scratch.free_place.assign(plan.joint_laws.size(), 0);
 }
 
@@ -98,19 +98,17 @@ void set_springs(const Plan& plan, Scratch<Real>& scratch) {
     scratch.reach[next] = reach_of<Real>(plan, joint);
     scratch.spring_of[j] = static_cast<int>(next++);
   }
-  scratch.stretched.assign(scratch.springs.law_of_block.size(), 0);
+  scratch.softens.assign(scratch.springs.law_of_block.size(), 0);
 }
 
 template <class Real>
-void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening) {
+void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const law::Ends<double>& opening) {
   const Index j = static_cast<Index>(joint), place = take_place(plan, state, scratch, joint);
-  const auto& law = plan.joint_laws[static_cast<Index>(law_of(plan, joint))];
-  const double furthest = std::max(std::hypot(opening[0], opening[1]), std::hypot(opening[2], opening[3]));
-  const double scale = 1.0 / std::max(1.0, furthest * std::max(law.per_onset_n, law.per_onset_t)),
-               spring = law.penalty * plan.length[j] / 6.0;
+  const double spring = plan.joint_laws[static_cast<Index>(law_of(plan, joint))].penalty * plan.length[j] / 6.0;
+  const std::array<double, 4> at_onset{opening.ax, opening.az, opening.bx, opening.bz};
   for (Index i = 0; i < 4; ++i) {
-    state.opening[in_block(place, 4, i)] = static_cast<Real>(scale * opening[i]);
-    state.force[in_block(place, 4, i)] = static_cast<Real>(scale * spring * (2.0 * opening[i] + opening[(i + 2) % 4]));
+    state.opening[in_block(place, 4, i)] = static_cast<Real>(at_onset[i]);
+    state.force[in_block(place, 4, i)] = static_cast<Real>(spring * (2.0 * at_onset[i] + at_onset[(i + 2) % 4]));
   }
   const Index at = static_cast<Index>(scratch.spring_of[j]);
   scratch.springs.length[at] = Real(0), scratch.reach[at] = std::numeric_limits<Real>::max();
@@ -161,7 +159,7 @@ void set_kept(const State<Real>& state, Scratch<Real>& scratch, Curve curve) {
 
 #define FRACFARM_INSTANTIATE(Real)                                                                     \
   template void set_springs(const Plan&, Scratch<Real>&);                                              \
-  template void follow(const Plan&, State<Real>&, Scratch<Real>&, int, const std::array<double, 4>&);  \
+  template void follow(const Plan&, State<Real>&, Scratch<Real>&, int, const law::Ends<double>&);      \
   template bool is_unsettled(const State<Real>&);                                                      \
   template void settle(const Plan&, State<Real>&, Scratch<Real>&);                                     \
   template bool follow_again(const Plan&, State<Real>&, Scratch<Real>&, const std::vector<int>&, int); \

@@ -3,9 +3,8 @@
 // along the triangles again, so that neighbours in memory are neighbours in the body and no block of springs is half empty.
 #pragma once
 
-#include <array>
-
 #include "solver/fdem/model.hpp"
+#include "solver/law/edge.hpp"
 
 namespace fracfarm::fdem {
 
@@ -13,9 +12,9 @@ namespace fracfarm::fdem {
 template <class Real>
 void set_springs(const Plan& plan, Scratch<Real>& scratch);
 
-// From now on the joint is followed, undamaged, as it would be had it opened straight to where it is (both ends, m).
+// From now on the joint is followed, undamaged, with the last opening of a spring that it had, m.
 template <class Real>
-void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const std::array<double, 4>& opening);
+void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int joint, const law::Ends<double>& opening);
 
 // So many joints were followed since both lists were last settled that it pays again.
 template <class Real>

@@ -39,6 +39,7 @@ struct JointPlaces {
   const int *left_row, *right_row;    // [b][l], places in `rows`
   const int *left_slot, *right_slot;  // [b][l], places in `slots`
   const Real* length;                 // [b][l], m; 0: no spring
+  const Real* along;                  // [b][2][l], m: from the first node to the second, undeformed
   const int* law_of_block;            // [b]
 };
 
@@ -60,12 +61,11 @@ struct View {
   Real* told_force;                  // [i][corner_count][l], N/m: internal force and extra
   // Joints that are springs so far, and those that are followed (with damage, or near it).
   JointPlaces<Real> springs, followed;
-  const Real* reach;         // [b][l], m^2: springs that open further at an end must be followed; largest number where none can
-  unsigned char* stretched;  // [b]: 1 where a spring of the block does
-  const Real* along;         // [b][2][l], m: of followed joints, from the first node to the second, undeformed
-  Real *damage, *kept;       // [b][2][l], at the two points; and the curve's z of it
-  Real *opening, *force;     // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
-  unsigned char* breaks;     // [b]: 1 where a followed joint of the block broke in this step
+  const Real* reach;       // [b][l], m^2: springs that open further at an end may soften; largest number where none can
+  unsigned char* softens;  // [b]: 1 where a spring of the block does
+  Real *damage, *kept;     // [b][2][l], at the two points; and the curve's z of it
+  Real *opening, *force;   // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
+  unsigned char* breaks;   // [b]: 1 where a followed joint of the block broke in this step
   const law::Joint<Real>* joint_laws;
   Curve curve;
   bool always_flow;    // the radial return in every block
@@ -97,12 +97,13 @@ struct Kernels {
   // Forces at u, v += dt f / m, u += dt v.
   AdvanceSums (*advance)(const View<Real>&, Blocks, Real dt);
   TriangleSums (*measure)(const View<Real>&, Blocks, Real dt);
-  // Forces of the springs at u into the slots of both sides; which of them must be followed from now on.
+  // Forces of the springs at u into the slots of both sides; which of them soften and must be followed from now on.
   void (*join)(const View<Real>&, Blocks);
   // The same of followed joints, over what join left there; returns the work that is gone, J/m.
   double (*follow)(const View<Real>&, Blocks);
-  // What springs store, J/m.
+  // What springs store, and what followed joints do, J/m.
   double (*stored)(const View<Real>&, Blocks);
+  double (*stored_by_followed)(const View<Real>&, Blocks);
 };
 
 // Paths that this processor runs, best first; the last is the baseline, which every processor runs.

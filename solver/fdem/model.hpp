@@ -70,21 +70,21 @@ inline constexpr std::array<const char*, 4> stage_names{"boundary", "triangles",
 template <class Real>
 struct JointList {
   std::vector<int> left_row, right_row, left_slot, right_slot, law_of_block;
-  Field<Real> length;
+  Field<Real> length, along;
   std::vector<int> joint_at;
   int blocks() const { return static_cast<int>(law_of_block.size()); }
   JointPlaces<Real> places() const {
-    return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), law_of_block.data()};
+    return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), along.data(), law_of_block.data()};
   }
 };
 
 template <class Real>
 struct Scratch {
-  JointList<Real> springs;               // without length where they were followed since joints were last settled
-  Field<Real> reach;                     // of springs
-  std::vector<unsigned char> stretched;  // by block of springs
+  JointList<Real> springs;             // without length where they were followed since joints were last settled
+  Field<Real> reach;                   // of springs
+  std::vector<unsigned char> softens;  // by block of springs
   JointList<Real> followed;
-  Field<Real> along, kept;                // of followed joints: as in View
+  Field<Real> kept;                       // of followed joints: as in View
   std::vector<unsigned char> breaks;      // by block of followed joints
   std::vector<int> place_of, spring_of;   // place of a joint among the followed ones, -1: a spring; and among the springs
   std::vector<int> free_place;            // by law: next place in its last block, a multiple of `lanes` where that is full

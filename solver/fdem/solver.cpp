@@ -55,8 +55,8 @@ View<Real> Fdem<Real>::view() const {
   v.told_of_block = model_.told_of_block.data(), v.told = model_.told.data();
   v.told_velocity = scratch_.told_velocity.data(), v.told_force = scratch_.told_force.data();
   v.springs = scratch_.springs.places(), v.followed = scratch_.followed.places();
-  v.reach = scratch_.reach.data(), v.stretched = scratch_.stretched.data();
-  v.along = scratch_.along.data(), v.breaks = scratch_.breaks.data();
+  v.reach = scratch_.reach.data(), v.softens = scratch_.softens.data();
+  v.breaks = scratch_.breaks.data();
   v.damage = s.damage.data(), v.kept = scratch_.kept.data(), v.opening = s.opening.data(), v.force = s.force.data();
   v.joint_laws = model_.joint_laws.data();
   v.curve = curve_of(settings_);
@@ -93,7 +93,7 @@ template <class Real>
 void Fdem<Real>::join(double time) {
   const View<Real> before = view();
   in_chunks<char>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.join(before, blocks), '\0'; });
-  follow_stretched();
+  follow_what_softens();
   const View<Real> v = view();
   for (const double lost :
        in_chunks<double>(scratch_.followed.blocks(), threads_, [&](Blocks blocks) { return kernels_.follow(v, blocks); }))
@@ -108,9 +108,10 @@ double Fdem<Real>::stored_in_joints() const {
   for (const double part :
        in_chunks<double>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.stored(v, blocks); }))
     sum += part;
-  double followed = 0.0;
-  for (Index i = 0; i < state_.force.size(); ++i) followed += static_cast<double>(state_.force[i]) * static_cast<double>(state_.opening[i]);
-  return sum + 0.5 * followed;
+  for (const double part :
+       in_chunks<double>(scratch_.followed.blocks(), threads_, [&](Blocks blocks) { return kernels_.stored_by_followed(v, blocks); }))
+    sum += part;
+  return sum;
 }
 
 template <class Real>

@@ -8,6 +8,7 @@
 #include "solver/fdem/contact/contact.hpp"
 #include "solver/fdem/kernels.hpp"
 #include "solver/fdem/model.hpp"
+#include "solver/law/edge.hpp"
 #include "solver/simulation.hpp"
 
 namespace fracfarm::fdem {
@@ -15,6 +16,12 @@ namespace fracfarm::fdem {
 // W/m, with the velocities half a step before and after an instant.
 struct Powers {
   double before, after;
+};
+
+template <class Real>
+struct EdgeNow {
+  law::Ends<Real> opening;
+  law::Line<Real> line;
 };
 
 template <class Real>
@@ -60,8 +67,9 @@ class Fdem final : public MeshSimulation {
   Powers power_of_told(double dt) const;
   double power_of_pulls(double time) const;
   BreakMode mode_of(int joint) const;
-  std::array<Real, 4> opening_of(int joint) const;
-  void follow_stretched();
+  law::Ends<Real> side_at(int row) const;
+  EdgeNow<Real> edge_now(int joint) const;
+  void follow_what_softens();
   double stored_in_joints() const;
   std::array<double, 4> reactions(double dt) const;
 

@@ -88,12 +88,13 @@ TEST_CASE("a resumed run has the bits of one that never stopped") {
   const double dt = step_of<float>();
   const auto never_stopped = plate<float>("shale", FdemTier::fast);
   const auto whole = outcome_of(*never_stopped);
-  CHECK(never_stopped->state().settled > 0);  // the joints were put in order on the way, and some came after
-  CHECK(never_stopped->state().followed.size() > static_cast<std::size_t>(never_stopped->state().settled));
+  CHECK(never_stopped->state().settled > 0);
+  bool joints_out_of_order = false;
   for (const long long stop : {1LL, 500LL, 1200LL}) {
     const auto first = plate<float>("shale", FdemTier::fast), second = plate<float>("shale", FdemTier::fast);
     go(*first, dt, 0, stop);
     (void)first->sample(stop, dt);
+    joints_out_of_order |= first->state().followed.size() > static_cast<std::size_t>(first->state().settled);
     ArchiveWriter archive;
     first->save(archive);
     ArchiveReader reader(archive.bytes());
@@ -101,6 +102,7 @@ TEST_CASE("a resumed run has the bits of one that never stopped") {
     CHECK(reader.finished());
     check_same(whole, outcome_of(*second, stop));
   }
+  CHECK(joints_out_of_order);
 }
 
 TEST_CASE("a checkpoint that was cut or is of another mesh is refused") {
