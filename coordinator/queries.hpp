@@ -108,7 +108,7 @@ std::vector<WorkerRow> open_workers(Database& ledger);  // not ended
 std::optional<WorkerRow> worker_row(Database& ledger, std::int64_t id);
 std::vector<WorkerRow> workers_named(Database& ledger, const std::string& word, int limit);  // of a peer or node, the newest first
 std::vector<AttemptRow> attempts_on(Database& ledger, const std::string& node, int limit);   // the newest first
-bool had_later_life(Database& ledger, const std::string& peer, const std::string& instance);  // another instance of it came after this one
+bool had_later_life(Database& ledger, const std::string& peer, const std::string& instance);  // instances sort as they were started
 
 struct AlarmRow {
   std::string kind;

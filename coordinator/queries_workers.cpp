@@ -77,10 +77,7 @@ std::optional<WorkerRow> worker_row(Database& ledger, std::int64_t id) {
 }
 
 bool had_later_life(Database& ledger, const std::string& peer, const std::string& instance) {
-  Rows rows = ledger.query(
-      "SELECT EXISTS(SELECT 1 FROM workers AS it JOIN workers AS later ON later.peer = it.peer AND later.id > it.id"
-      " WHERE it.peer = ?1 AND it.instance = ?2)",
-      peer, instance);
+  Rows rows = ledger.query("SELECT EXISTS(SELECT 1 FROM workers WHERE peer = ?1 AND instance > ?2)", peer, instance);
   return rows.next() && rows.integer(0) != 0;
 }
 

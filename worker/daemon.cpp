@@ -13,7 +13,6 @@
 #include "common/base/host.hpp"
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
-#include "worker/identity.hpp"
 #include "worker/judge.hpp"
 
 namespace fracfarm::worker {
@@ -63,19 +62,20 @@ int run_daemon(const DaemonOptions& given) {
     return static_cast<int>(error.fault == Fault::bad_request ? exit_bad_input : exit_failed);
   };
   if (options.node.empty()) options.node = host_name();
-  const auto identity = Identity::claim(options.farm, options.node);
+  const auto identity = Identity::claim(options.farm, options.node, SystemClock().wall_s());
   if (!identity) return complain(identity.error());
   const auto own = wire::load_or_make_key(options.farm, identity->name());
   if (!own) return complain(own.error());
   if (options.scratch.empty()) options.scratch = options.farm / "scratch" / identity->name();
   if (auto made = make_folders({options.scratch, options.farm / "checkpoints", options.farm / "log"}); !made) return complain(made.error());
-  Daemon daemon(options, identity->name(), *own);
+  Daemon daemon(options, *identity, *own);
   return daemon.run();
 }
 
-Daemon::Daemon(DaemonOptions options, std::string name, wire::KeyPair own)
+Daemon::Daemon(DaemonOptions options, const Identity& identity, wire::KeyPair own)
     : options_(std::move(options)),
-      name_(std::move(name)),
+      name_(identity.name()),
+      instance_(identity.instance()),
       log_(options_.farm, name_, options_.quiet),
       signals_(open_signals()),
       link_(options_.farm, std::move(own), clock_) {
@@ -128,7 +128,7 @@ Result<std::string> Daemon::solver_build() {
 SessionOptions Daemon::session_options(const std::string& build_id, std::vector<wire::Completion> unacknowledged) {
   SessionOptions session;
   session.node = options_.node;
-  session.instance = random_instance();
+  session.instance = instance_;
   session.build_id = build_id;
   session.slots = options_.slots;
   session.memory_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/clock.hpp"
+#include "worker/identity.hpp"
 #include "worker/keeper.hpp"
 #include "worker/link.hpp"
 #include "worker/log.hpp"
@@ -33,8 +34,8 @@ int run_daemon(const DaemonOptions& options);
 
 class Daemon {
  public:
-  // `name`: of the key, whose lock the caller holds. Blocks SIGTERM, SIGINT, SIGUSR1 and SIGCHLD in this thread and those it starts.
-  Daemon(DaemonOptions options, std::string name, wire::KeyPair own);
+  // The caller keeps `identity`, whose key is `own`. Blocks SIGTERM, SIGINT, SIGUSR1 and SIGCHLD in this thread and those it starts.
+  Daemon(DaemonOptions options, const Identity& identity, wire::KeyPair own);
   ~Daemon();
   int run();
 
@@ -66,7 +67,7 @@ class Daemon {
   std::filesystem::path checkpoint_path(const std::string& key) const { return options_.farm / "checkpoints" / (key + ".ckpt"); }
 
   DaemonOptions options_;
-  std::string name_;
+  std::string name_, instance_;
   SystemClock clock_;
   Log log_;
   int signals_ = -1;

@@ -6,9 +6,11 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <utility>
 
@@ -17,9 +19,22 @@ namespace {
 
 constexpr int most_workers_a_node = 1000;
 
+// The number of this start, larger than any before it: one more than the lock's file has, and not less than the milliseconds of now.
+Result<std::uint64_t> next_start(int fd, double wall_s) {
+  std::array<char, 32> text{};
+  std::uint64_t before = 0;
+  const ssize_t read = ::pread(fd, text.data(), text.size(), 0);
+  if (read > 0) std::from_chars(text.data(), text.data() + read, before);
+  const std::uint64_t number = std::max(before + 1, static_cast<std::uint64_t>(std::max(0.0, wall_s) * 1e3));
+  const std::string line = fmt::format("{:020}\n", number);  // always as long: it takes the place of the one before whole
+  if (::pwrite(fd, line.data(), line.size(), 0) != static_cast<ssize_t>(line.size()))
+    return fail(Fault::node_lost, fmt::format("cannot write the number of this start: {}", std::strerror(errno)));
+  return number;
+}
+
 }  // namespace
 
-Result<Identity> Identity::claim(const std::filesystem::path& farm, const std::string& node) {
+Result<Identity> Identity::claim(const std::filesystem::path& farm, const std::string& node, double wall_s) {
   const std::filesystem::path keys = farm / "keys";
   std::error_code error;
   std::filesystem::create_directories(keys, error);
@@ -30,8 +45,15 @@ Result<Identity> Identity::claim(const std::filesystem::path& farm, const std::s
     const std::filesystem::path lock = keys / (name + ".lock");
     const int fd = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (fd < 0) return fail(Fault::node_lost, fmt::format("cannot open {}: {}", lock.string(), std::strerror(errno)));
-    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return Identity(name, fd);
-    ::close(fd);
+    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+      ::close(fd);
+      continue;
+    }
+    Identity claimed(name, {}, fd);
+    const Result<std::uint64_t> number = next_start(fd, wall_s);
+    if (!number) return tl::unexpected(number.error());
+    claimed.instance_ = instance_of_start(*number);
+    return claimed;
   }
   return fail(Fault::bad_request,
               fmt::format("{} workers run on {} already; the limit is {}", most_workers_a_node, node, most_workers_a_node));
@@ -40,17 +62,19 @@ Result<Identity> Identity::claim(const std::filesystem::path& farm, const std::s
 Identity::~Identity() {
   if (fd_ >= 0) ::close(fd_);
 }
-Identity::Identity(Identity&& other) noexcept : name_(std::move(other.name_)), fd_(std::exchange(other.fd_, -1)) {}
+Identity::Identity(Identity&& other) noexcept
+    : name_(std::move(other.name_)), instance_(std::move(other.instance_)), fd_(std::exchange(other.fd_, -1)) {}
 Identity& Identity::operator=(Identity&& other) noexcept {
   std::swap(name_, other.name_);
+  std::swap(instance_, other.instance_);
   std::swap(fd_, other.fd_);
   return *this;
 }
 
-std::string random_instance() {
-  std::array<unsigned char, 8> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return fmt::format("pid-{}", ::getpid());
-  std::string text;
+std::string instance_of_start(std::uint64_t number) {
+  std::array<unsigned char, 4> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) bytes = {};
+  std::string text = fmt::format("start-{:020}-", number);
   for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
   return text;
 }

@@ -30,11 +30,11 @@ struct HeldLease {
 
 struct Hello {
   std::string node;      // host name
-  std::string instance;  // one id for each start of the daemon
+  std::string instance;  // one id for each start of the daemon; that of a later start sorts after it
   int slots = 1;
   std::uint64_t memory_bytes = 0;
   std::string build_id;       // of the solver
-  double remaining_s = -1.0;  // of the allocation; < 0: unlimited
+  double remaining_s = -1.0;  // in which jobs may run, until they are stopped for the end of the allocation; < 0: unlimited
   std::vector<HeldLease> held;
 };
 

@@ -46,3 +46,16 @@ TEST_CASE("A HELLO of an earlier life takes nothing from the later one") {
   CHECK(attempts_of(farm.ledger.reading(), static_cast<std::int64_t>(it.job)).empty());
   CHECK(farm.beat("w", {held(it)}).rulings == std::vector{wire::Ruling::adopt});
 }
+
+TEST_CASE(
+    "The first word of an earlier life takes nothing from the later one and does not shut it out, though nobody ever heard of that life") {
+  Farm farm(8);
+  farm.hello("w", "node", "i2");
+  const wire::Assignment it = farm.one("w");
+  CHECK(std::holds_alternative<wire::Refusal>(farm.hello("w", "node", "i1")));
+  CHECK(farm.job(it.job).state == State::leased);
+  farm.start();  // also after a restart
+  CHECK(std::holds_alternative<wire::Refusal>(farm.hello("w", "node", "i1")));
+  CHECK(std::holds_alternative<wire::Welcome>(farm.hello("w", "node", "i2", {held(it)})));
+  CHECK(farm.complete("w", result_of(it)) == wire::Receipt::accepted);
+}

@@ -90,7 +90,7 @@ Instant CoordinatorProcess::instant_for(int from) const {
 std::optional<CoordinatorProcess::Outgoing> CoordinatorProcess::answer(const Letter& letter) {
   const KnownBug bug = world_.settings.bug;
   const Result<wire::RequestEnvelope> request = wire::decode_request(letter.bytes);
-  if (!request || (letter.from >= 0 && world_.watch.unheard_of_dead(peer_name(letter.from), *request))) return std::nullopt;
+  if (!request) return std::nullopt;
   const double now = world_.agenda.now();
   const std::string own = peer_name(letter.from),
                     peer = bug == KnownBug::identity_by_routing_id && letter.from != person ? letter.route : own;

@@ -97,7 +97,6 @@ void Watch::look_at_receipts(const wire::Next& next, const wire::Jobs& jobs, Dat
 }
 
 void Watch::sent(const std::string& peer, const wire::RequestEnvelope& asked, const wire::Reply& reply) {
-  if (std::holds_alternative<wire::Welcome>(reply)) welcomed_.insert({peer, asked.request_id / requests_of_a_life});
   const auto* next = std::get_if<wire::Next>(&asked.request);
   const auto* jobs = std::get_if<wire::Jobs>(&reply);
   if (!next || !jobs) return;

@@ -26,14 +26,6 @@ class Watch {
   void lost(const std::string& shard, std::uint64_t offset) { stored_.erase({shard, offset}); }  // with a node's power
   void began(const std::string& peer, std::uint64_t life) { lives_[peer] = life; }               // a worker process
   void left(const std::string& peer, std::uint64_t life) { left_.insert({peer, life}); }         // it said BYE and was heard
-  // A dead life's HELLO that nobody ever answered: the coordinator cannot tell that the life is over. The network of this world delivers it
-  // before the next life speaks, or never.
-  bool unheard_of_dead(const std::string& peer, const wire::RequestEnvelope& asked) const {
-    const std::uint64_t life = asked.request_id / requests_of_a_life;
-    const auto now = lives_.find(peer);
-    return std::holds_alternative<wire::Hello>(asked.request) && now != lives_.end() && life != now->second &&
-           !welcomed_.contains({peer, life});
-  }
   void asked(const std::string& peer, const wire::Request& request);
   // Before the transaction of the reply is committed; `epoch` of the coordinator that gives it.
   void answered(const std::string& peer, const wire::RequestEnvelope& asked, const wire::Reply& reply, std::uint64_t epoch, double now,
@@ -78,7 +70,7 @@ class Watch {
   double lease_timeout_s_, wall_budget_s_;
   std::map<std::pair<std::string, std::uint64_t>, std::string> stored_;  // (shard, offset) -> digest of what lies there, synced
   std::map<std::string, std::uint64_t> lives_;                           // by peer
-  std::set<std::pair<std::string, std::uint64_t>> welcomed_, left_;      // lives of peers
+  std::set<std::pair<std::string, std::uint64_t>> left_;                 // lives of peers
   std::map<LeaseKey, Given> given_;
   std::map<std::pair<std::string, int>, LeaseKey> tries_;  // (key, attempt) -> lease
   std::map<std::string, std::vector<LeaseKey>> served_;    // one claim -> the leases it got

@@ -42,7 +42,7 @@ void WorkerProcess::start() {
   ++life_;
   worker::SessionOptions options;
   options.node = node_of_worker(number_);
-  options.instance = fmt::format("{}-{}", name_of_worker(number_), life_);
+  options.instance = fmt::format("{}-{:08}", name_of_worker(number_), life_);
   options.build_id = build;
   options.slots = 2;
   options.memory_bytes = 1u << 30;
