@@ -145,3 +145,35 @@ TEST_CASE("a run past its bound begins again with half the step, and says so") {
   CHECK(result.notes[0].find("half the step") != std::string::npos);
   CHECK(result.energy_residual < 0.02);
 }
+
+TEST_CASE("a run that half the step does not save begins again in the reference tier, and its result is that tier's") {
+  const double edge = run(torn()).dt / FdemSettings{}.dt_fraction;
+  Scene scene = torn();
+  scene.fdem.dt = 3.0 * edge;  // half of it is past the edge, too
+  const RunResult result = run(scene);
+  REQUIRE(result.notes.size() == 2);
+  CHECK(result.notes[0].find("begun again with half the step after: ") == 0);
+  CHECK(result.notes[1].find("begun again with the reference tier after: ") == 0);
+  Scene reference = torn();
+  reference.fdem.tier = FdemTier::reference;
+  RunControl half;
+  half.step_scale = 0.5;
+  const RunResult straight = run(reference, half);
+  check_same(result, straight);
+  CHECK(straight.dt < 0.5 * edge);
+  CHECK(result.kernel == straight.kernel);
+  CHECK(result.energy_residual < 1e-3);
+}
+
+TEST_CASE("a run that no fall-back saves ends SOLVER_NUMERIC with evidence and gives no result") {
+  RunControl wild;
+  wild.step_scale = 8.0;  // past the edge even when it is halved, in the reference tier
+  for (const FdemTier tier : {FdemTier::fast, FdemTier::reference}) {
+    Scene scene = torn();
+    scene.fdem.tier = tier;
+    const Result<RunResult> result = solve(scene, wild);
+    REQUIRE_FALSE(result);
+    CHECK(result.error().fault == Fault::solver_numeric);
+    CHECK(result.error().message.find("at step ") != std::string::npos);
+  }
+}
