@@ -14,10 +14,13 @@ constexpr auto clock_tick = std::chrono::seconds(2);
 
 }  // namespace
 
+// What cannot be read just now is asked for again at the next look; until then everybody's key is as good as it was.
 void Admission::reload() {
+  Result<std::vector<AllowedKey>> keys = allowed_keys(farm_);
+  read_ = keys.has_value();
+  if (!keys) return;
   names_.clear();
-  for (AllowedKey& key : allowed_keys(farm_)) names_.emplace(std::move(key.public_key), std::move(key.name));
-  read_ = true;
+  for (AllowedKey& key : *keys) names_.emplace(std::move(key.public_key), std::move(key.name));
 }
 
 // Two changes within one tick of the file system's clock leave the folder's time unchanged: a young time says nothing.

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t key_length = 40;  // Z85 of 32 bytes
+constexpr std::size_t longest_public_file = 256;
 
 fs::path keys_folder(const fs::path& farm) { return farm / "keys"; }
 fs::path public_path(const fs::path& farm, const std::string& name) {
@@ -89,11 +90,9 @@ Result<KeyPair> make_pair(const fs::path& farm, const std::string& name) {
   return pair;
 }
 
-std::string read_public(const fs::path& path) {
-  const auto text = read_file(path, 256);
-  if (!text) return {};
-  const std::string key = text->substr(0, key_length);
-  return is_z85_key(key) && text->find_first_not_of(" \t\r\n", key_length) == std::string::npos ? key : std::string();
+std::string key_of(const std::string& text) {
+  const std::string key = text.substr(0, key_length);
+  return is_z85_key(key) && text.find_first_not_of(" \t\r\n", key_length) == std::string::npos ? key : std::string();
 }
 
 }  // namespace
@@ -115,19 +114,26 @@ Result<KeyPair> load_or_make_key(const fs::path& farm, const std::string& name) 
 
 Result<std::string> server_public_key(const fs::path& farm) {
   const fs::path path = public_path(farm, "server");
-  const std::string key = read_public(path);
+  const Result<std::string> text = read_file(path, longest_public_file);
+  const std::string key = text ? key_of(*text) : std::string();
   if (key.empty()) return fail(Fault::node_lost, path.string() + " is missing or no key: has a coordinator run in this farm?");
   return key;
 }
 
-std::vector<AllowedKey> allowed_keys(const fs::path& farm) {
+Result<std::vector<AllowedKey>> allowed_keys(const fs::path& farm) {
   std::vector<AllowedKey> keys;
-  std::error_code error;
-  for (fs::directory_iterator entry(keys_folder(farm) / "allowed", error), end; !error && entry != end; entry.increment(error)) {
+  std::error_code error, gone;
+  const fs::path folder = keys_folder(farm) / "allowed";
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path& path = entry->path();
     if (path.extension() != ".pub" || !is_key_name(path.stem().string())) continue;
-    if (std::string key = read_public(path); !key.empty()) keys.push_back({path.stem().string(), std::move(key)});
+    const Result<std::string> text = read_file(path, longest_public_file);
+    const bool readable = ::access(path.c_str(), R_OK) == 0 && fs::file_size(path, gone) <= longest_public_file && !gone;
+    if (!text && readable) return tl::unexpected(text.error());
+    if (std::string key = text ? key_of(*text) : std::string(); !key.empty()) keys.push_back({path.stem().string(), std::move(key)});
   }
+  if (error && error != std::errc::no_such_file_or_directory)
+    return fail(Fault::node_lost, fmt::format("cannot read {}: {}", folder.string(), error.message()));
   std::sort(keys.begin(), keys.end(), [](const AllowedKey& a, const AllowedKey& b) { return a.name < b.name; });
   return keys;
 }

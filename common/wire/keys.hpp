@@ -28,7 +28,8 @@ struct AllowedKey {
   std::string name;
   std::string public_key;
 };
-// Every public key that may connect now; those that are no key are left out.
-std::vector<AllowedKey> allowed_keys(const std::filesystem::path& farm);
+// Every public key that may connect now; files that hold no key are left out. Errors: NODE_LOST where the folder, or a file that is there,
+// cannot be read just now (no descriptor left, a file system that went away): that says nothing about anybody's key.
+Result<std::vector<AllowedKey>> allowed_keys(const std::filesystem::path& farm);
 
 }  // namespace fracfarm::wire

@@ -86,7 +86,7 @@ std::vector<CheckupLine> keys(const fs::path& farm) {
 CheckupLine file_limit() {
   rlimit limit{};
   ::getrlimit(RLIMIT_NOFILE, &limit);
-  return judge_file_limit(limit.rlim_cur == RLIM_INFINITY ? 1e18 : static_cast<double>(limit.rlim_cur));
+  return judge_file_limit(limit.rlim_max == RLIM_INFINITY ? 1e18 : static_cast<double>(limit.rlim_max));  // a coordinator raises its own
 }
 
 }  // namespace
@@ -109,7 +109,8 @@ CheckupLine judge_disk(const std::string& name, double free_bytes, double free_i
 CheckupLine judge_file_limit(double most_files) {
   const std::string found = fmt::format("{:.0f} open files allowed", most_files);
   if (most_files >= usual_files) return {Verdict::good, "limits", found, ""};
-  return {Verdict::warning, "limits", found, fmt::format("ulimit -n {:.0f}: a coordinator has a socket for every worker", usual_files)};
+  return {Verdict::warning, "limits", found,
+          fmt::format("ulimit -Hn {:.0f}: a coordinator has a connection for every worker", usual_files)};
 }
 
 CheckupLine judge_clock(bool synchronized, double error_s) {

@@ -1,5 +1,6 @@
 // fracfarm-coordinator: options, signals, and the one place where a failing ledger ends the program.
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -23,6 +24,14 @@ void catch_signals() {
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
+}
+
+// As many as this machine allows: every worker has a connection, and so has whoever knocks at the door.
+void raise_file_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 }  // namespace
@@ -64,6 +73,7 @@ int main(int argc, char** argv) {
   }
   if (version) return fmt::print("fracfarm-coordinator {}\n", build_info().build_id), exit_ok;
   catch_signals();
+  raise_file_limit();
   options.backup_every_s = 60.0 * backup_minutes;
   options.farm = std::filesystem::absolute(options.farm).lexically_normal();
   std::error_code error;

@@ -1,11 +1,13 @@
 #include "common/wire/keys.hpp"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <thread>
 
+#include "common/wire/admission.hpp"
 #include "tests/wire/temp_farm.hpp"
 
 using namespace fracfarm;
@@ -28,9 +30,9 @@ TEST_CASE("a key is made once, kept private and found again") {
   CHECK(made->public_key.size() == 40);
   CHECK(mode_of(farm.path / "keys") == 0700);
   CHECK(mode_of(farm.path / "keys/worker-node-0.key") == 0600);
-  REQUIRE(allowed_keys(farm.path).size() == 1);
-  CHECK(allowed_keys(farm.path)[0].name == "worker-node-0");
-  CHECK(allowed_keys(farm.path)[0].public_key == made->public_key);
+  REQUIRE(allowed_keys(farm.path)->size() == 1);
+  CHECK(allowed_keys(farm.path)->at(0).name == "worker-node-0");
+  CHECK(allowed_keys(farm.path)->at(0).public_key == made->public_key);
 }
 
 TEST_CASE("the server's key is no peer's key") {
@@ -38,7 +40,7 @@ TEST_CASE("the server's key is no peer's key") {
   CHECK_FALSE(server_public_key(farm.path).has_value());
   const auto server = load_or_make_key(farm.path, "server");
   CHECK(*server_public_key(farm.path) == server->public_key);
-  CHECK(allowed_keys(farm.path).empty());
+  CHECK(allowed_keys(farm.path)->empty());
 }
 
 TEST_CASE("programs that start at once agree on one pair") {
@@ -47,7 +49,7 @@ TEST_CASE("programs that start at once agree on one pair") {
   std::vector<std::thread> threads;
   for (std::string& key : keys) threads.emplace_back([&] { key = load_or_make_key(farm.path, "client").value().public_key; });
   for (std::thread& thread : threads) thread.join();
-  for (const std::string& key : keys) CHECK(key == allowed_keys(farm.path).at(0).public_key);
+  for (const std::string& key : keys) CHECK(key == allowed_keys(farm.path)->at(0).public_key);
 }
 
 TEST_CASE("a revoked peer keeps its pair but is not allowed again by loading it") {
@@ -55,7 +57,7 @@ TEST_CASE("a revoked peer keeps its pair but is not allowed again by loading it"
   REQUIRE(load_or_make_key(farm.path, "worker-x").has_value());
   std::filesystem::remove(farm.path / "keys/allowed/worker-x.pub");
   REQUIRE(load_or_make_key(farm.path, "worker-x").has_value());
-  CHECK(allowed_keys(farm.path).empty());
+  CHECK(allowed_keys(farm.path)->empty());
 }
 
 TEST_CASE("bad names, readable secrets and files that are no key are refused in words") {
@@ -69,5 +71,24 @@ TEST_CASE("bad names, readable secrets and files that are no key are refused in 
   ::chmod((farm.path / "keys/w.key").c_str(), 0600);
   CHECK(load_or_make_key(farm.path, "w").error().message.find("no CURVE key pair") != std::string::npos);
   std::ofstream(farm.path / "keys/allowed/odd.pub") << "not a key";
-  CHECK(allowed_keys(farm.path).size() == 1);
+  CHECK(allowed_keys(farm.path)->size() == 1);
+}
+
+TEST_CASE("a moment in which no file can be opened takes nobody's key away, and one that was taken away meanwhile is seen after it") {
+  const TempFarm farm;
+  const std::string key = load_or_make_key(farm.path, "worker-x").value().public_key;
+  Admission admission(farm.path);
+  REQUIRE(admission.still_allowed("worker-x", key, 1000.0));
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+  const rlimit none{0, before.rlim_max};
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &none) == 0);
+  const bool allowed = admission.still_allowed("worker-x", key, 2000.0), named = admission.name_of_key(key) == "worker-x";
+  const bool read = allowed_keys(farm.path).has_value();
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &before) == 0);
+  CHECK(allowed);
+  CHECK(named);
+  CHECK_FALSE(read);
+  std::filesystem::remove(farm.path / "keys/allowed/worker-x.pub");
+  CHECK_FALSE(admission.still_allowed("worker-x", key, 3000.0));
 }
