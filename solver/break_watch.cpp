@@ -10,7 +10,12 @@ void BreakWatch::feed(const Series& series, std::size_t row) {
 
 void BreakWatch::at_row(const Series& series) {
   feed(series, series.rows() - 1);
-  history_.add(simulation_.stored_damage());
+  changes_.clear();
+  simulation_.take_damage_changes(changes_);
+  if (history_.rows() == 0)
+    history_.add(simulation_.stored_damage());
+  else
+    history_.add_changes(changes_);
 }
 
 bool BreakWatch::is_over(Stop stop, double time) const {

@@ -32,6 +32,7 @@ class BreakWatch final : public Watch {
   const MeshSimulation& simulation_;
   FailurePick pick_;
   DamageHistory history_;
+  std::vector<EdgeDamage> changes_;  // since the last row, kept for its memory
 };
 
 }  // namespace fracfarm

@@ -8,8 +8,13 @@ namespace fracfarm {
 void DamageHistory::add(const std::vector<float>& damage) {
   if (ends_.empty()) first_ = last_ = damage;
   assert(damage.size() == last_.size());
-  for (std::size_t edge = 0; edge < damage.size(); ++edge)
-    if (damage[edge] != last_[edge]) changes_.push_back({static_cast<std::uint32_t>(edge), last_[edge] = damage[edge]});
+  for (std::size_t edge = 0; edge < damage.size(); ++edge) note(static_cast<std::uint32_t>(edge), damage[edge]);
+  ends_.push_back(changes_.size());
+}
+
+void DamageHistory::add_changes(const std::vector<EdgeDamage>& damage) {
+  assert(!ends_.empty());
+  for (const EdgeDamage& now : damage) note(now.edge, now.damage);
   ends_.push_back(changes_.size());
 }
 
@@ -31,7 +36,7 @@ void DamageHistory::load(ArchiveReader& archive) {
   archive.get_array(first_);
   archive.get_array(changes_);
   archive.get_array(ends_);
-  const bool edges = std::all_of(changes_.begin(), changes_.end(), [&](const Change& change) { return change.edge < first_.size(); });
+  const bool edges = std::all_of(changes_.begin(), changes_.end(), [&](const EdgeDamage& change) { return change.edge < first_.size(); });
   const bool rows = std::is_sorted(ends_.begin(), ends_.end()) && (ends_.empty() ? changes_.empty() : ends_.back() == changes_.size());
   if (!edges || !rows) archive.reject();
   if (archive.failed()) {
@@ -39,7 +44,7 @@ void DamageHistory::load(ArchiveReader& archive) {
     return;
   }
   last_ = first_;
-  for (const Change& change : changes_) last_[change.edge] = change.damage;
+  for (const EdgeDamage& change : changes_) last_[change.edge] = change.damage;
 }
 
 }  // namespace fracfarm

@@ -9,10 +9,17 @@
 
 namespace fracfarm {
 
+struct EdgeDamage {
+  std::uint32_t edge;
+  float damage;
+};
+
 class DamageHistory {
  public:
-  // Rows are numbered from 0 in the order they come; every field is as long as the first.
+  // Rows are numbered from 0 in the order they come; every field is as long as the first. A row that is not the first may come as those
+  // edges that may have changed since the row before.
   void add(const std::vector<float>& damage);
+  void add_changes(const std::vector<EdgeDamage>& damage);
   std::size_t rows() const { return ends_.size(); }
   // The field of a row below rows().
   std::vector<float> at(std::size_t row) const;
@@ -21,12 +28,12 @@ class DamageHistory {
   void load(ArchiveReader& archive);
 
  private:
-  struct Change {
-    std::uint32_t edge;
-    float damage;
-  };
+  void note(std::uint32_t edge, float damage) {
+    if (damage != last_[edge]) changes_.push_back({edge, last_[edge] = damage});
+  }
+
   std::vector<float> first_, last_;
-  std::vector<Change> changes_;      // of all rows, in order
+  std::vector<EdgeDamage> changes_;  // of all rows, in order
   std::vector<std::uint64_t> ends_;  // changes up to and with each row
 };
 

@@ -12,6 +12,7 @@
 #include "common/scene/scene.hpp"
 #include "common/scene/triangle_mesh.hpp"
 #include "solver/archive.hpp"
+#include "solver/damage_history.hpp"
 #include "solver/rules.hpp"
 #include "solver/sample.hpp"
 
@@ -74,6 +75,8 @@ enum class BreakMode : unsigned char { none = 0, tension = 1, shear = 2, mixed =
 class MeshSimulation : public Simulation {
  public:
   virtual const TriangleMesh& mesh() const = 0;
+  // Appends every edge whose stored damage may have changed since this was last asked, or since the start or a load.
+  virtual void take_damage_changes(std::vector<EdgeDamage>& changes) const = 0;
   virtual std::vector<double> break_time() const = 0;         // s by edge, not a number where it never broke
   virtual std::vector<unsigned char> break_mode() const = 0;  // BreakMode by edge
   Layout layout() const final { return MeshLayout{mesh(), break_time(), break_mode()}; }

@@ -45,7 +45,7 @@ void put(const Plan& plan, JointList<Real>& list, Index place, int joint) {
 template <class Real>
 void add_followed_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
   add_block_of_pads(plan, scratch.followed, law);
-  scratch.breaks.push_back(0);
+  scratch.breaks.push_back(0), scratch.grew.push_back(1);
   scratch.kept.insert(scratch.kept.end(), 2 * lanes, Real(1));
   state.damage.insert(state.damage.end(), 2 * lanes, Real(0));
   state.opening.insert(state.opening.end(), 4 * lanes, Real(0)), state.force.insert(state.force.end(), 4 * lanes, Real(0));
@@ -69,7 +69,7 @@ Index take_place(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, i
 template <class Real>
 void forget_places(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
   state.followed.clear(), state.damage.clear(), state.opening.clear(), state.force.clear();
-  scratch.followed = {}, scratch.kept.clear(), scratch.breaks.clear();
+  scratch.followed = {}, scratch.kept.clear(), scratch.breaks.clear(), scratch.grew.clear();
   scratch.free_place.assign(plan.joint_laws.size(), 0);
 }
 

@@ -56,7 +56,7 @@ View<Real> Fdem<Real>::view() const {
   v.told_velocity = scratch_.told_velocity.data(), v.told_force = scratch_.told_force.data();
   v.springs = scratch_.springs.places(), v.followed = scratch_.followed.places();
   v.reach = scratch_.reach.data(), v.softens = scratch_.softens.data();
-  v.breaks = scratch_.breaks.data();
+  v.breaks = scratch_.breaks.data(), v.grew = scratch_.grew.data();
   v.damage = s.damage.data(), v.kept = scratch_.kept.data(), v.opening = s.opening.data(), v.force = s.force.data();
   v.joint_laws = model_.joint_laws.data();
   v.curve = curve_of(settings_);
@@ -227,10 +227,27 @@ std::vector<float> Fdem<Real>::stored_damage() const {
     if (joint < 0) continue;
     const int place = scratch_.place_of[static_cast<Index>(joint)];
     if (place < 0) continue;
-    const Index at = in_block(static_cast<Index>(place), 2, 0);
-    damage[edge] = static_cast<float>(Real(0.5) * (state_.damage[at] + state_.damage[at + lanes]));
+    damage[edge] = damage_at(static_cast<Index>(place));
   }
   return damage;
+}
+
+// Of a followed joint, by its place: the mean of its points.
+template <class Real>
+float Fdem<Real>::damage_at(Index place) const {
+  return static_cast<float>(Real(0.5) * (state_.damage[in_block(place, 2, 0)] + state_.damage[in_block(place, 2, 1)]));
+}
+
+template <class Real>
+void Fdem<Real>::take_damage_changes(std::vector<EdgeDamage>& changes) const {
+  for (Index b = 0; b < scratch_.grew.size(); ++b) {
+    if (!scratch_.grew[b]) continue;
+    scratch_.grew[b] = 0;
+    for (Index place = b * lanes; place < (b + 1) * lanes; ++place) {
+      const int joint = scratch_.followed.joint_at[place];
+      if (joint >= 0) changes.push_back({static_cast<std::uint32_t>(plan_.edge_of[static_cast<Index>(joint)]), damage_at(place)});
+    }
+  }
 }
 
 template <class Real>

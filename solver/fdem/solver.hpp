@@ -35,6 +35,7 @@ class Fdem final : public MeshSimulation {
   double mean_stress_zz() const override;
   SampleRow sample(long long n, double dt) const override;
   std::vector<float> stored_damage() const override;
+  void take_damage_changes(std::vector<EdgeDamage>& changes) const override;
   void save(ArchiveWriter& archive) const override;
   bool load(ArchiveReader& archive, long long n, double dt) override;
   std::map<std::string, double> stage_seconds() const override;
@@ -67,6 +68,7 @@ class Fdem final : public MeshSimulation {
   Powers power_of_told(double dt) const;
   double power_of_pulls(double time) const;
   BreakMode mode_of(int joint) const;
+  float damage_at(std::size_t place) const;
   law::Ends<Real> side_at(int row) const;
   EdgeNow<Real> edge_now(int joint) const;
   void follow_what_softens();

@@ -31,6 +31,17 @@ TEST_CASE("a history of damage gives every field back as it was") {
   for (std::size_t row = 0; row < fields.size(); ++row) CHECK(history.at(row) == fields[row]);
 }
 
+TEST_CASE("a history of damage that is told what may have changed is the one that sees every field") {
+  DamageHistory history;
+  history.add(fields[0]);
+  for (const auto& changes : std::vector<std::vector<EdgeDamage>>{{}, {{2, 0.0f}, {0, 0.25f}}, {{0, 1.0f}, {2, 0.5f}}})
+    history.add_changes(changes);
+  for (std::size_t row = 0; row < fields.size(); ++row) CHECK(history.at(row) == fields[row]);
+  ArchiveWriter one, other;
+  history.save(one), filled().save(other);
+  CHECK(one.bytes() == other.bytes());
+}
+
 TEST_CASE("a history of damage goes on after a restart as if there had been none") {
   ArchiveWriter archive;
   filled().save(archive);

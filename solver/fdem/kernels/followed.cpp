@@ -130,6 +130,7 @@ INLINE void follow_batch(const View& view, Blocks blocks, LaneSums& gone) {
       });
   for (int n = 0; n < count; ++n) {
     const int i = growing[n], b = blocks.begin + i / parts;
+    view.grew[b] = 1;
     if (soften<Curve>(view, b, i % parts, edges[i])) view.breaks[b] = 1;
   }
   for_each(

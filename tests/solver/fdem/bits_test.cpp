@@ -105,6 +105,22 @@ TEST_CASE("a resumed run has the bits of one that never stopped") {
   CHECK(joints_out_of_order);
 }
 
+TEST_CASE("the edges that may have changed are all that did") {
+  const auto run = plate<float>("shale", FdemTier::fast);
+  const double dt = step_of<float>();
+  std::vector<float> known = run->stored_damage();
+  std::size_t told = 0;
+  for (long long n = 0; n < steps; n += 10) {
+    go(*run, dt, n, n + 10);
+    std::vector<EdgeDamage> changes;
+    run->take_damage_changes(changes);
+    for (const EdgeDamage& now : changes) known[now.edge] = now.damage;
+    told += changes.size();
+    REQUIRE(known == run->stored_damage());
+  }
+  CHECK(told < known.size() * (steps / 10));
+}
+
 TEST_CASE("a checkpoint that was cut or is of another mesh is refused") {
   const auto run = plate<float>("shale", FdemTier::fast);
   go(*run, step_of<float>(), 0, 5);
