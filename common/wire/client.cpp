@@ -43,8 +43,10 @@ void set_options(zmq::socket_t& socket, const KeyPair& own, const std::string& s
 
 struct Client::Impl {
   std::filesystem::path farm;
+  EndpointReader reader{farm};
   KeyPair own;
-  Endpoint given;  // as connect was told; used where there is no endpoint.json
+  bool kept_in_farm = false;  // `own` is the farm's pair of its name: where that is replaced, so is this
+  Endpoint given;             // as connect was told; used where there is no endpoint.json
   Endpoint current;
   zmq::context_t context{1};
   zmq::socket_t socket;
@@ -55,9 +57,12 @@ struct Client::Impl {
   double looked_at = 0.0;
   double silence_s = first_silence_s;
 
-  Endpoint where() const { return read_endpoint(farm).value_or(given); }
+  explicit Impl(std::filesystem::path folder) : farm(std::move(folder)) {}
+  Endpoint where() { return reader.read().value_or(given); }
 
   Result<void> reconnect() {
+    if (kept_in_farm)
+      if (Result<KeyPair> pair = load_or_make_key(farm, own.name)) own = std::move(*pair);
     const auto server_key = server_public_key(farm);
     if (!server_key) return tl::unexpected(server_key.error());
     try {
@@ -127,10 +132,10 @@ Client::Client(Client&&) noexcept = default;
 Client& Client::operator=(Client&&) noexcept = default;
 
 Result<Client> Client::connect(const std::string& endpoint, const std::filesystem::path& farm, const KeyPair& own) {
-  auto impl = std::make_unique<Impl>();
-  impl->farm = farm;
+  auto impl = std::make_unique<Impl>(farm);
   impl->own = own;
   impl->given = {endpoint, 0, 0};
+  if (const Result<KeyPair> pair = load_key(farm, own.name)) impl->kept_in_farm = pair->public_key == own.public_key;
   if (auto connected = impl->reconnect(); !connected) return tl::unexpected(connected.error());
   return Client(std::move(impl));
 }

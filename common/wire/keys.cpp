@@ -112,6 +112,11 @@ Result<KeyPair> load_or_make_key(const fs::path& farm, const std::string& name) 
   return fs::exists(path, error) ? read_pair(path, name) : make_pair(farm, name);
 }
 
+Result<KeyPair> load_key(const fs::path& farm, const std::string& name) {
+  if (!is_key_name(name)) return fail(Fault::bad_request, fmt::format("'{}' is no key's name", name));
+  return read_pair(keys_folder(farm) / (name + ".key"), name);
+}
+
 Result<std::string> server_public_key(const fs::path& farm) {
   const fs::path path = public_path(farm, "server");
   const Result<std::string> text = read_file(path, longest_public_file);

@@ -1,6 +1,6 @@
 // CURVE keys of a farm, made on first use: DIR/keys (mode 0700) has <name>.key (the pair, mode 0600), server.pub, and allowed/<name>.pub
 // for everyone who may connect. Revoking a peer is removing its .pub, which ends its say at once, connected or not; it is never made again
-// beside an existing .key. Removing both gives it another pair at its next start.
+// beside an existing .key. Removing both gives it another pair when it next connects.
 #pragma once
 
 #include <filesystem>
@@ -22,6 +22,7 @@ bool is_key_name(const std::string& name);  // [a-z0-9._-]{1,64}, not starting w
 // The pair of this name in the farm folder, made and stored durably where it does not exist.
 // Errors: BAD_REQUEST for a bad name, a key that others can read or one that is no key; NODE_LOST where the disk refuses.
 Result<KeyPair> load_or_make_key(const std::filesystem::path& farm, const std::string& name);
+Result<KeyPair> load_key(const std::filesystem::path& farm, const std::string& name);  // where it exists
 Result<std::string> server_public_key(const std::filesystem::path& farm);
 
 struct AllowedKey {

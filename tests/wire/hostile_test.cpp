@@ -85,14 +85,34 @@ TEST_CASE("a key that is taken away has no say any more, though its connection l
 
 TEST_CASE("a worker's key is replaced while the farm runs: the old one is out, the new one in, under the same name") {
   Farm farm;
-  Client old_life = farm.client(farm.key("worker-a-0"));
-  REQUIRE(farm.talks(old_life));
+  zmq::context_t context;
+  const KeyPair old_pair = farm.key("worker-a-0");
+  zmq::socket_t stolen = raw_dealer(context, farm, old_pair, "");
+  stolen.send(zmq::buffer(encode(RequestEnvelope{1, Beat{}})), zmq::send_flags::none);
+  REQUIRE(farm.next());
   std::filesystem::remove(farm.path / "keys/worker-a-0.key");
   std::filesystem::remove(farm.path / "keys/allowed/worker-a-0.pub");
   Client new_life = farm.client(farm.key("worker-a-0"));
   farm.wait_for_revocation();
   CHECK(farm.talks(new_life));
-  CHECK_FALSE(farm.talks(old_life, 1.0));
+  stolen.send(zmq::buffer(encode(RequestEnvelope{2, Beat{}})), zmq::send_flags::none);
+  CHECK_FALSE(farm.next(0.5));
+  CHECK(farm.server->counts().revoked_keys >= 1);
+}
+
+TEST_CASE("a worker that runs on finds its new pair when the old one is replaced, and stays out where only its public half was taken") {
+  Farm farm;
+  Client client = farm.client(farm.key("worker-a-0"));
+  REQUIRE(farm.talks(client));
+  const auto old_pair = farm.key("worker-a-0");
+  std::filesystem::remove(farm.path / "keys/worker-a-0.key");
+  std::filesystem::remove(farm.path / "keys/allowed/worker-a-0.pub");
+  farm.wait_for_revocation();
+  CHECK(farm.talks(client, 20.0));
+  CHECK(farm.key("worker-a-0").public_key != old_pair.public_key);
+  std::filesystem::remove(farm.path / "keys/allowed/worker-a-0.pub");
+  farm.wait_for_revocation();
+  CHECK_FALSE(farm.talks(client, 5.0));
 }
 
 TEST_CASE("the coordinator's key is replaced between two starts, and clients that lived on find the new one") {
