@@ -1,5 +1,7 @@
 #include "common/wire/endpoint.hpp"
 
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include "common/base/atomic_file.hpp"
@@ -31,6 +33,19 @@ Result<Endpoint> read_endpoint(const std::filesystem::path& farm) {
                      body["epoch"].is_number_unsigned() && body.contains("pid") && body["pid"].is_number_integer();
   if (!sound) return fail(Fault::node_lost, path.string() + " is not what a coordinator writes; start the coordinator again");
   return Endpoint{body["endpoint"].get<std::string>(), body["epoch"].get<std::uint64_t>(), body["pid"].get<long long>()};
+}
+
+// A coordinator replaces the file as a whole, so that a new one is another inode or has another time.
+const std::optional<Endpoint>& EndpointReader::read() {
+  struct stat facts {};
+  std::array<std::int64_t, 4> now{};
+  if (::stat(file_.c_str(), &facts) == 0)
+    now = {static_cast<std::int64_t>(facts.st_ino), facts.st_size, facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
+  if (now == seen_ && now != std::array<std::int64_t, 4>{}) return endpoint_;
+  seen_ = now;
+  Result<Endpoint> fresh = read_endpoint(farm_);
+  endpoint_ = fresh ? std::optional(std::move(*fresh)) : std::nullopt;
+  return endpoint_;
 }
 
 }  // namespace fracfarm::wire

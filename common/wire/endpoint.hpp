@@ -2,8 +2,10 @@
 // reconnect, because the port may change.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "common/base/result.hpp"
@@ -23,5 +25,17 @@ std::string reachable(const std::string& bound, const std::string& host);
 Result<void> write_endpoint(const std::filesystem::path& farm, const Endpoint& endpoint);
 // Errors: NODE_LOST where there is none ("no coordinator has run here") or it cannot be read.
 Result<Endpoint> read_endpoint(const std::filesystem::path& farm);
+
+// The same for who asks before every message: the file is read again only where it is another one than last time, or of another time.
+class EndpointReader {
+ public:
+  explicit EndpointReader(std::filesystem::path farm) : file_(farm / "endpoint.json"), farm_(std::move(farm)) {}
+  const std::optional<Endpoint>& read();  // nothing where read_endpoint says no
+
+ private:
+  std::filesystem::path file_, farm_;
+  std::array<std::int64_t, 4> seen_{};  // inode, size and time of the file; zeros: none
+  std::optional<Endpoint> endpoint_;
+};
 
 }  // namespace fracfarm::wire

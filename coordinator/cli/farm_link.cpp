@@ -37,7 +37,7 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
     const bool elsewhere = !std::filesystem::exists(paths.ledger(), none) && std::filesystem::exists(paths.endpoint(), none);
     FarmLink link;
     if (!elsewhere) {
-      Result<Ledger> ledger = Ledger::open(paths, make, 0.1);
+      Result<Ledger> ledger = Ledger::open(paths, make, 0.0);  // a coordinator will not let go of it: no waiting here
       if (ledger) {
         link.own_ = std::make_unique<Own>(Own{std::move(*ledger), {}});
         return link;
