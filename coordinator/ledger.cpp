@@ -20,7 +20,7 @@ Result<void> prepare(Database& database) {
   database.script(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF; PRAGMA cache_size = "
       "-65536;"
-      "PRAGMA temp_store = MEMORY;");
+      "PRAGMA temp_store = MEMORY; PRAGMA wal_autocheckpoint = 8000;");
   // Everything that the log holds goes to the database, written and synced anew: after a sync that failed the system may show pages that
   // never reached the disk, and whatever is committed behind them would be lost with them.
   database.script("PRAGMA wal_checkpoint(TRUNCATE)");
@@ -145,15 +145,26 @@ void Ledger::complete(const Job& job, const Outcome& outcome, wire::LeaseId leas
       job.id, lease.epoch, lease.counter, worker, name_of(outcome.verdict), outcome.time_to_failure, rule_id(bounded(outcome.failure_rule)),
       outcome.peak_stress, outcome.steps, outcome.cpu_s, outcome.wall_s, outcome.done_at, shard, outcome.offset, outcome.length,
       kept_digest);
-  database_.run("UPDATE workers SET done = done + 1 WHERE id = ?1", worker);
+  ++tally_.done[worker];
   if (has_record) learn(job, outcome, worker);
+  if (!database_.in_transaction()) settle();
 }
 
 void Ledger::learn(const Job& job, const Outcome& outcome, std::int64_t worker) {
-  database_.run(
-      "INSERT INTO durations VALUES(?1, coalesce((SELECT node_type FROM workers WHERE id = ?2), ''), ?3, 1, ?4, ?5)"
-      " ON CONFLICT DO UPDATE SET n = n + 1, wall_s = wall_s + excluded.wall_s, bytes = bytes + excluded.bytes",
-      class_id(job.job_class), worker, duration_bin(outcome.wall_s), outcome.wall_s, outcome.length);
+  Tally::Took& took = tally_.took[{class_id(job.job_class), worker, duration_bin(outcome.wall_s)}];
+  ++took.n;
+  took.wall_s += outcome.wall_s;
+  took.bytes += outcome.length;
+}
+
+void Ledger::settle() {
+  for (const auto& [worker, n] : tally_.done) database_.run("UPDATE workers SET done = done + ?2 WHERE id = ?1", worker, n);
+  for (const auto& [of, took] : tally_.took)
+    database_.run(
+        "INSERT INTO durations VALUES(?1, coalesce((SELECT node_type FROM workers WHERE id = ?2), ''), ?3, ?4, ?5, ?6)"
+        " ON CONFLICT DO UPDATE SET n = n + excluded.n, wall_s = wall_s + excluded.wall_s, bytes = bytes + excluded.bytes",
+        std::get<0>(of), std::get<1>(of), std::get<2>(of), took.n, took.wall_s, took.bytes);
+  tally_ = {};
 }
 
 void Ledger::record_attempt(const Job& job, const Attempt& attempt, double wall_s) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "common/base/result.hpp"
 #include "common/wire/messages.hpp"
@@ -31,11 +32,17 @@ class Ledger {
   static Result<Ledger> over(Database database);  // migrated; the caller sees to it that nobody else holds it
 
   void begin() { database_.begin(); }
-  void commit() { database_.commit(); }
+  void commit() {
+    settle();
+    database_.commit();
+  }
   void rollback() {
     database_.rollback();
     classes_.clear(), rules_.clear(), shards_.clear();
+    tally_ = {};
   }
+  // Writes what results have added up to since the last commit: to be called before these sums are read in the same transaction.
+  void settle();
   Database& reading() { return database_; }
 
   std::uint64_t raise_epoch();  // and gives it; its own transaction, on the disk when this returns
@@ -104,11 +111,23 @@ class Ledger {
                         std::string_view select);
   void learn(const Job& job, const Outcome& outcome, std::int64_t worker);
 
+  // Sums that many results of one transaction add to, written once.
+  struct Tally {
+    struct Took {
+      std::uint64_t n = 0;
+      double wall_s = 0.0;
+      std::uint64_t bytes = 0;
+    };
+    std::map<std::int64_t, std::uint64_t> done;                        // by worker
+    std::map<std::tuple<std::int64_t, std::int64_t, int>, Took> took;  // by class, worker and bin of the duration
+  };
+
   std::optional<LedgerLock> lock_;  // outlives the database
   Database database_;
   // Rows that never change, by what they are asked for; emptied by a rollback.
   std::map<JobClass, std::int64_t> classes_;
   std::map<std::string, std::int64_t> rules_, shards_;
+  Tally tally_;
 };
 
 std::string node_type_of(int slots, std::uint64_t memory_bytes);  // "16 slots, 64 GB": what run times are learned by, beside the class

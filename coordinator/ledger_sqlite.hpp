@@ -6,12 +6,12 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -115,7 +115,10 @@ class Database {
   std::int64_t changes() const;
 
   sqlite3* handle_ = nullptr;
-  std::map<std::string, std::unique_ptr<Kept>, std::less<>> kept_;
+  struct Hash : std::hash<std::string_view> {
+    using is_transparent = void;
+  };
+  std::unordered_map<std::string, std::unique_ptr<Kept>, Hash, std::equal_to<>> kept_;
 };
 
 }  // namespace fracfarm

@@ -52,6 +52,7 @@ void Reactor::learn_anew() {
 
 wire::Reply Reactor::answer(const std::string& peer, const wire::RequestEnvelope& envelope, Instant now) {
   if (const auto* ask = std::get_if<wire::Ask>(&envelope.request)) {
+    ledger_.settle();
     wire::Answer answer = answer_ask(Desk{ledger_, book_, settings_.build_id, now, [this, now] { return live(now); }}, *ask);
     if (writes(ask->verb)) learn_anew();
     return answer;
@@ -89,6 +90,7 @@ std::optional<wire::Reply> Reactor::wrong_build(const std::string& build_id) {
 // LEASED under this very lease, by this peer. An earlier epoch's lease is as good as any: a restart takes nothing away.
 bool Reactor::holds(const std::string& peer, const wire::LeaseId& lease, const Job& job) {
   if (job.state != State::leased || !(job.lease == lease)) return false;
+  if (const auto session = roster_.find(peer); session != roster_.end() && session->second.worker == job.worker) return true;
   const std::optional<WorkerRow> holder = worker_row(ledger_.reading(), job.worker);
   return holder && holder->peer == peer;
 }

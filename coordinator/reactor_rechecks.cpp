@@ -85,9 +85,9 @@ std::optional<wire::Assignment> Reactor::assign_recheck(const RecheckRow& rechec
 
 // By the job's key alone, so that which jobs are computed again depends on no moment.
 void Reactor::sample_for_audit(const Job& job, const std::string& node, Instant now) {
-  if (settings_.audit_fraction <= 0.0 || job.step_scale != 1.0 || live_nodes(now).size() < 2) return;
+  if (settings_.audit_fraction <= 0.0 || job.step_scale != 1.0) return;
   const double draw = static_cast<double>(std::stoull(job.key.substr(0, 13), nullptr, 16)) / static_cast<double>(1ull << 52);
-  if (draw >= settings_.audit_fraction) return;
+  if (draw >= settings_.audit_fraction || live_nodes(now).size() < 2) return;
   ledger_.add_recheck(job.id, audit, node, now.wall_s);
   rechecks_waiting_ = true;
 }

@@ -94,7 +94,8 @@ bool Reactor::was_outrun(const std::string& peer, const Job& job, const wire::Le
 wire::Receipt Reactor::on_completion(const std::string& peer, Session& session, const wire::Completion& completion, Instant now) {
   const std::optional<Job> job = job_by_key(ledger_.reading(), completion.key);
   if (!job || completion.lease.epoch > epoch_ || completion.lease.epoch == 0) return wire::Receipt::refused;
-  if (!was_given(ledger_.reading(), peer, *job, completion.lease) && !was_outrun(peer, *job, completion.lease)) {
+  if (job->worker != session.worker && !was_given(ledger_.reading(), peer, *job, completion.lease) &&
+      !was_outrun(peer, *job, completion.lease)) {
     note(fmt::format("{} says that it did job {}, which it was never given: refused", peer, job->id));
     return wire::Receipt::refused;
   }
