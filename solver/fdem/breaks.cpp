@@ -46,20 +46,20 @@ void Fdem<Real>::follow_what_softens() {
     const law::Joint<Real>& law = model_.joint_laws[static_cast<Index>(scratch_.springs.law_of_block[b])];
     for (Index place = b * lanes; place < (b + 1) * lanes; ++place) {
       const int joint = scratch_.springs.joint_at[place];
-      if (joint < 0 || scratch_.springs.length[place] == Real(0)) continue;
+      if (joint < 0) continue;
       const auto [opening, line] = edge_now(joint);
       if (!law::overstretched(law, opening, line)) continue;
       const double lambda = std::sqrt(static_cast<double>(law::largest_stretch(law, opening, line) / line.square));
       follow(plan_, state_, scratch_, joint, {opening.ax / lambda, opening.az / lambda, opening.bx / lambda, opening.bz / lambda});
     }
   }
-  if (is_unsettled(state_)) settle(plan_, state_, scratch_);
 }
 
 template <class Real>
 void Fdem<Real>::note_breaks(double time) {
   for (int b = 0; b < scratch_.followed.blocks(); ++b) {
     if (!scratch_.breaks[static_cast<Index>(b)]) continue;
+    scratch_.breaks[static_cast<Index>(b)] = 0;
     for (int l = 0; l < lanes; ++l) {
       const Index at = static_cast<Index>(b) * 2 * lanes + static_cast<Index>(l);
       const int joint = scratch_.followed.joint_at[static_cast<Index>(b * lanes + l)];

@@ -43,6 +43,31 @@ void put(const Plan& plan, JointList<Real>& list, Index place, int joint) {
 }
 
 template <class Real>
+void make_pad(const Plan& plan, JointList<Real>& list, Index place) {
+  const int spare = 3 * plan.slots;
+  list.left_row[place] = row_of_side(spare), list.right_row[place] = row_of_side(spare + 3);
+  list.left_slot[place] = 4 * spare, list.right_slot[place] = 4 * (spare + 3);
+  list.length[place] = Real(0), list.joint_at[place] = -1;
+}
+
+// See JointList::ready.
+template <class Real>
+void find_ready(const Plan& plan, JointList<Real>& list) {
+  list.ready.assign(static_cast<Index>((plan.triangle_blocks() + triangle_chunk - 1) / triangle_chunk), 0);
+  Index chunk = 0;
+  for (Index place = 0; place < list.joint_at.size(); ++place) {
+    const int joint = list.joint_at[place];
+    if (joint >= 0) {
+      const Index j = static_cast<Index>(joint);
+      const int slot = std::max(plan.left_side[j], plan.right_side[j]) / 3;
+      chunk = std::max(chunk, static_cast<Index>(slot / (lanes * triangle_chunk)));
+    }
+    if (place % lanes == lanes - 1) list.ready[chunk] = static_cast<int>(place / lanes) + 1;
+  }
+  for (Index c = 1; c < list.ready.size(); ++c) list.ready[c] = std::max(list.ready[c], list.ready[c - 1]);
+}
+
+template <class Real>
 void add_followed_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
   add_block_of_pads(plan, scratch.followed, law);
   scratch.breaks.push_back(0), scratch.grew.push_back(1);
@@ -73,6 +98,16 @@ void forget_places(const Plan& plan, State<Real>& state, Scratch<Real>& scratch)
   scratch.free_place.assign(plan.joint_laws.size(), 0);
 }
 
+// Those that are followed now are settled: others come in blocks of their own.
+template <class Real>
+void close(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
+  state.settled = static_cast<int>(state.followed.size());
+  scratch.settled_blocks = scratch.followed.blocks();
+  scratch.free_place.assign(plan.joint_laws.size(), 0);
+  find_ready(plan, scratch.followed);
+  set_springs(plan, scratch);
+}
+
 template <class Real>
 void copy(const Field<Real>& from, Index old_place, Field<Real>& to, Index place, Index numbers) {
   for (Index i = 0; i < numbers; ++i) to[in_block(place, numbers, i)] = from[in_block(old_place, numbers, i)];
@@ -99,6 +134,7 @@ void set_springs(const Plan& plan, Scratch<Real>& scratch) {
     scratch.spring_of[j] = static_cast<int>(next++);
   }
   scratch.softens.assign(scratch.springs.law_of_block.size(), 0);
+  find_ready(plan, scratch.springs);
 }
 
 template <class Real>
@@ -110,8 +146,8 @@ void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int jo
     state.opening[in_block(place, 4, i)] = static_cast<Real>(at_onset[i]);
     state.force[in_block(place, 4, i)] = static_cast<Real>(spring * (2.0 * at_onset[i] + at_onset[(i + 2) % 4]));
   }
-  const Index at = static_cast<Index>(scratch.spring_of[j]);
-  scratch.springs.length[at] = Real(0), scratch.reach[at] = std::numeric_limits<Real>::max();
+  make_pad(plan, scratch.springs, static_cast<Index>(scratch.spring_of[j]));
+  scratch.reach[static_cast<Index>(scratch.spring_of[j])] = std::numeric_limits<Real>::max();
 }
 
 template <class Real>
@@ -132,8 +168,7 @@ void settle(const Plan& plan, State<Real>& state, Scratch<Real>& scratch) {
     copy(damage, old, state.damage, place, 2), copy(kept, old, scratch.kept, place, 2);
     copy(opening, old, state.opening, place, 4), copy(force, old, state.force, place, 4);
   }
-  state.settled = static_cast<int>(joints.size());
-  set_springs(plan, scratch);
+  close(plan, state, scratch);
 }
 
 template <class Real>
@@ -142,11 +177,10 @@ bool follow_again(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, 
   for (const int joint : joints) {
     const bool known = joint >= 0 && joint < plan.joints && plan.edge_of[static_cast<Index>(joint)] >= 0;
     if (!known || scratch.place_of[static_cast<Index>(joint)] >= 0) return false;
-    if (state.followed.size() == static_cast<Index>(settled)) set_springs(plan, scratch);
+    if (state.followed.size() == static_cast<Index>(settled)) close(plan, state, scratch);
     follow(plan, state, scratch, joint, {});
   }
-  if (joints.size() == static_cast<Index>(settled)) set_springs(plan, scratch);
-  state.settled = settled;
+  if (joints.size() == static_cast<Index>(settled)) close(plan, state, scratch);
   return true;
 }
 

@@ -65,7 +65,7 @@ struct View {
   unsigned char* softens;  // [b]: 1 where a spring of the block does
   Real *damage, *kept;     // [b][2][l], at the two points; and the curve's z of it
   Real *opening, *force;   // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
-  unsigned char* breaks;   // [b]: 1 where a followed joint of the block broke in this step
+  unsigned char* breaks;   // [b]: becomes 1 where a followed joint of the block broke
   unsigned char* grew;     // [b]: becomes 1 where one was damaged further
   const law::Joint<Real>* joint_laws;
   Curve curve;

@@ -66,12 +66,16 @@ struct State {
 enum class Stage { boundary, triangles, joints, contact };
 inline constexpr std::array<const char*, 4> stage_names{"boundary", "triangles", "joints", "contact"};
 
+// Blocks that are worked on at once, and whose sums are one.
+inline constexpr int triangle_chunk = 64, followed_chunk = 16;
+
 // Joints as the kernels go through them, and which one is where, -1: a pad.
 template <class Real>
 struct JointList {
   std::vector<int> left_row, right_row, left_slot, right_slot, law_of_block;
   Field<Real> length, along;
   std::vector<int> joint_at;
+  std::vector<int> ready;  // by chunk of triangles: so many blocks, from the first, are of these triangles and those before alone
   int blocks() const { return static_cast<int>(law_of_block.size()); }
   JointPlaces<Real> places() const {
     return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), along.data(), law_of_block.data()};
@@ -80,10 +84,12 @@ struct JointList {
 
 template <class Real>
 struct Scratch {
-  JointList<Real> springs;             // without length where they were followed since joints were last settled
+  JointList<Real> springs;             // pads where joints were followed since they were last settled
   Field<Real> reach;                   // of springs
   std::vector<unsigned char> softens;  // by block of springs
-  JointList<Real> followed;
+  JointList<Real> followed;            // those settled, and in blocks of their own those that came after
+  int settled_blocks = 0;
+  std::vector<double> gone;                 // J/m, by chunk of the settled blocks, in a step
   Field<Real> kept;                         // of followed joints: as in View
   std::vector<unsigned char> breaks, grew;  // by block of followed joints
   std::vector<int> place_of, spring_of;     // place of a joint among the followed ones, -1: a spring; and among the springs

@@ -125,18 +125,18 @@ Pair materials_of(const Body& body, Index edge) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-// Edges with joints, those of one pair of materials after another, along their triangles.
+// Edges with joints, those of one pair of materials after another, each after both its triangles.
 std::vector<std::pair<Pair, int>> ordered_joints(const Body& body, const Plan& plan) {
   std::vector<std::tuple<Pair, int, int, int>> keyed;
   for (Index edge = 0; edge < body.mesh.edge_nodes.size(); ++edge) {
     if (!is_joint(body, edge)) continue;
     const Sides sides = sides_of(body, plan, edge);
-    keyed.emplace_back(materials_of(body, edge), std::min(sides.left, sides.right), std::max(sides.left, sides.right),
+    keyed.emplace_back(materials_of(body, edge), std::max(sides.left, sides.right), std::min(sides.left, sides.right),
                        static_cast<int>(edge));
   }
   std::sort(keyed.begin(), keyed.end());
   std::vector<std::pair<Pair, int>> ordered;
-  for (const auto& [pair, low, high, edge] : keyed) ordered.emplace_back(pair, edge);
+  for (const auto& [pair, later, earlier, edge] : keyed) ordered.emplace_back(pair, edge);
   return ordered;
 }
 

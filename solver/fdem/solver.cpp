@@ -13,19 +13,6 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int chunk_blocks = 64;
-
-// job(chunk, blocks) over all blocks in chunks; the sums come back in the order of the chunks.
-template <class Sums, class Job>
-std::vector<Sums> in_chunks(int blocks, int threads, const Job& job) {
-  const int chunks = (blocks + chunk_blocks - 1) / chunk_blocks;
-  std::vector<Sums> sums(static_cast<Index>(chunks));
-#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
-  for (int chunk = 0; chunk < chunks; ++chunk)
-    sums[static_cast<Index>(chunk)] = job(Blocks{chunk * chunk_blocks, std::min(blocks, (chunk + 1) * chunk_blocks)});
-  return sums;
-}
-
 bool sides_exist(const std::vector<int>& sides, const Plan& plan) {
   return std::all_of(sides.begin(), sides.end(), [&](int side) { return side >= 0 && side < 3 * plan.slots; });
 }
@@ -68,53 +55,6 @@ View<Real> Fdem<Real>::view() const {
 }
 
 template <class Real>
-AdvanceSums Fdem<Real>::advance(double dt) {
-  const View<Real> v = view();
-  AdvanceSums all{};
-  for (const AdvanceSums& part : in_chunks<AdvanceSums>(plan_.triangle_blocks(), threads_,
-                                                        [&](Blocks blocks) { return kernels_.advance(v, blocks, static_cast<Real>(dt)); }))
-    all.viscous += part.viscous, all.plastic += part.plastic;
-  return all;
-}
-
-template <class Real>
-TriangleSums Fdem<Real>::measure(double dt) const {
-  const View<Real> v = view();
-  TriangleSums all{};
-  for (const TriangleSums& part : in_chunks<TriangleSums>(
-           plan_.triangle_blocks(), threads_, [&](Blocks blocks) { return kernels_.measure(v, blocks, static_cast<Real>(dt)); })) {
-    all.stress_xx += part.stress_xx, all.stress_zz += part.stress_zz, all.elastic += part.elastic, all.plastic += part.plastic;
-    all.viscous += part.viscous, all.kinetic += part.kinetic, all.fastest = std::max(all.fastest, part.fastest);
-  }
-  return all;
-}
-
-template <class Real>
-void Fdem<Real>::join(double time) {
-  const View<Real> before = view();
-  in_chunks<char>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.join(before, blocks), '\0'; });
-  follow_what_softens();
-  const View<Real> v = view();
-  for (const double lost :
-       in_chunks<double>(scratch_.followed.blocks(), threads_, [&](Blocks blocks) { return kernels_.follow(v, blocks); }))
-    state_.ledger.fracture += lost;
-  note_breaks(time);
-}
-
-template <class Real>
-double Fdem<Real>::stored_in_joints() const {
-  const View<Real> v = view();
-  double sum = 0.0;
-  for (const double part :
-       in_chunks<double>(scratch_.springs.blocks(), threads_, [&](Blocks blocks) { return kernels_.stored(v, blocks); }))
-    sum += part;
-  for (const double part :
-       in_chunks<double>(scratch_.followed.blocks(), threads_, [&](Blocks blocks) { return kernels_.stored_by_followed(v, blocks); }))
-    sum += part;
-  return sum;
-}
-
-template <class Real>
 void Fdem<Real>::put_rows() {
   for (int slot = 0; slot < plan_.slots; ++slot)
     for (int k = 0; k < 4; ++k)
@@ -140,7 +80,8 @@ Result<void> Fdem<Real>::start(double dt) {
   if (!rules_.damage_where_stretched)
     for (int joint = 0; joint < plan_.joints; ++joint)
       if (plan_.edge_of[static_cast<Index>(joint)] >= 0) follow(plan_, state_, scratch_, joint, {});
-  join(0.0);
+  join();
+  soften(0.0);
   pull(0.0);
   for (const Corner side : body_.exposed) expose(plan_.corner_of(side));
   expose_cracks_that_close();
@@ -170,7 +111,8 @@ Result<void> Fdem<Real>::step(long long n, double dt) {
   remember_told();
   const double pulls_before = power_of_pulls(now);
   clock.end(Stage::boundary);
-  const AdvanceSums moved = advance(dt);
+  const bool at_once = threads_ == 1 && plan_.ties.empty();
+  const AdvanceSums moved = at_once ? advance_and_join(dt) : advance(dt);
   clock.end(Stage::triangles);
   move_as_one(dt);
   const Powers told = power_of_told(dt);
@@ -181,7 +123,8 @@ Result<void> Fdem<Real>::step(long long n, double dt) {
   pull(next);
   tell_velocities(next + 0.5 * dt);
   clock.end(Stage::boundary);
-  join(next);
+  if (!at_once) join();
+  soften(next);
   clock.end(Stage::joints);
   expose_cracks_that_close();
   contact_.add_forces(scratch_.rows.data(), state_.extra.data());

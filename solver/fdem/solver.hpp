@@ -49,10 +49,13 @@ class Fdem final : public MeshSimulation {
 
  private:
   View<Real> view() const;
-  // All blocks, in chunks, whose sums are added in order.
+  // Passes over all blocks, in chunks, whose sums are added in order (passes.cpp).
   AdvanceSums advance(double dt);
   TriangleSums measure(double dt) const;
-  void join(double time);
+  void join();
+  AdvanceSums advance_and_join(double dt);
+  void soften(double time);
+  double stored_in_joints() const;
   void put_rows();
   void tell_velocities(double time);
   void pull(double time);
@@ -72,7 +75,6 @@ class Fdem final : public MeshSimulation {
   law::Ends<Real> side_at(int row) const;
   EdgeNow<Real> edge_now(int joint) const;
   void follow_what_softens();
-  double stored_in_joints() const;
   std::array<double, 4> reactions(double dt) const;
 
   Body body_;

@@ -126,7 +126,6 @@ INLINE void follow_batch(const View& view, Blocks blocks, LaneSums& gone) {
       blocks, [&](int b, int s, int i) __attribute__((always_inline)) {
         growing[count] = i;
         count += stretch(view, b, s, edges[i]);
-        view.breaks[b] = 0;
       });
   for (int n = 0; n < count; ++n) {
     const int i = growing[n], b = blocks.begin + i / parts;

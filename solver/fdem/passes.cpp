@@ -1,0 +1,118 @@
+// Passes over triangles and joints, each over all blocks in chunks. Sums of the chunks are added in their order: the same bits for any
+// number of threads, and whether triangles and joints take turns or not.
+#include <algorithm>
+
+#include "solver/fdem/followed.hpp"
+#include "solver/fdem/solver.hpp"
+
+namespace fracfarm::fdem {
+namespace {
+
+using Index = std::size_t;
+
+int chunks_in(int blocks, int of) { return (blocks + of - 1) / of; }
+Blocks chunk_of(int chunk, int blocks, int of) { return {chunk * of, std::min(blocks, (chunk + 1) * of)}; }
+
+// job(blocks) over all blocks in chunks; the sums come back in the order of the chunks.
+template <class Sums, class Job>
+std::vector<Sums> in_chunks(int blocks, int of, int threads, const Job& job) {
+  const int chunks = chunks_in(blocks, of);
+  std::vector<Sums> sums(static_cast<Index>(chunks));
+#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
+  for (int chunk = 0; chunk < chunks; ++chunk) sums[static_cast<Index>(chunk)] = job(chunk_of(chunk, blocks, of));
+  return sums;
+}
+
+void add(AdvanceSums& all, const AdvanceSums& part) { all.viscous += part.viscous, all.plastic += part.plastic; }
+
+}  // namespace
+
+template <class Real>
+AdvanceSums Fdem<Real>::advance(double dt) {
+  const View<Real> v = view();
+  const auto job = [&](Blocks blocks) { return kernels_.advance(v, blocks, static_cast<Real>(dt)); };
+  AdvanceSums all{};
+  for (const AdvanceSums& part : in_chunks<AdvanceSums>(plan_.triangle_blocks(), triangle_chunk, threads_, job)) add(all, part);
+  return all;
+}
+
+template <class Real>
+TriangleSums Fdem<Real>::measure(double dt) const {
+  const View<Real> v = view();
+  const auto job = [&](Blocks blocks) { return kernels_.measure(v, blocks, static_cast<Real>(dt)); };
+  TriangleSums all{};
+  for (const TriangleSums& part : in_chunks<TriangleSums>(plan_.triangle_blocks(), triangle_chunk, threads_, job)) {
+    all.stress_xx += part.stress_xx, all.stress_zz += part.stress_zz, all.elastic += part.elastic, all.plastic += part.plastic;
+    all.viscous += part.viscous, all.kinetic += part.kinetic, all.fastest = std::max(all.fastest, part.fastest);
+  }
+  return all;
+}
+
+// Springs, and the followed joints that lie along their triangles.
+template <class Real>
+void Fdem<Real>::join() {
+  const View<Real> v = view();
+  const auto springs = [&](Blocks blocks) { return kernels_.join(v, blocks), '\0'; };
+  const auto followed = [&](Blocks blocks) { return kernels_.follow(v, blocks); };
+  in_chunks<char>(scratch_.springs.blocks(), triangle_chunk, threads_, springs);
+  scratch_.gone = in_chunks<double>(scratch_.settled_blocks, followed_chunk, threads_, followed);
+}
+
+// A chunk of triangles, and then those joints both of whose triangles have moved, while these are still in the cache.
+template <class Real>
+AdvanceSums Fdem<Real>::advance_and_join(double dt) {
+  const View<Real> v = view();
+  AdvanceSums all{};
+  scratch_.gone.clear();
+  int springs = 0, followed = 0;
+  for (int chunk = 0; chunk < chunks_in(plan_.triangle_blocks(), triangle_chunk); ++chunk) {
+    add(all, kernels_.advance(v, chunk_of(chunk, plan_.triangle_blocks(), triangle_chunk), static_cast<Real>(dt)));
+    scratch_.clock.end(Stage::triangles);
+    const int ready = scratch_.springs.ready[static_cast<Index>(chunk)];
+    kernels_.join(v, {springs, ready});
+    springs = ready;
+    const int ready_followed = scratch_.followed.ready.empty() ? 0 : scratch_.followed.ready[static_cast<Index>(chunk)];
+    for (; chunk_of(followed, scratch_.settled_blocks, followed_chunk).end <= ready_followed && followed * followed_chunk < ready_followed;
+         ++followed)
+      scratch_.gone.push_back(kernels_.follow(v, chunk_of(followed, scratch_.settled_blocks, followed_chunk)));
+    scratch_.clock.end(Stage::joints);
+  }
+  return all;
+}
+
+// What follows when joints have been joined: those that soften first, and those that came since joints were last settled.
+template <class Real>
+void Fdem<Real>::soften(double time) {
+  follow_what_softens();
+  const View<Real> v = view();
+  const int settled = scratch_.settled_blocks, others = scratch_.followed.blocks() - settled;
+  const auto followed = [&](Blocks blocks) { return kernels_.follow(v, {settled + blocks.begin, settled + blocks.end}); };
+  for (const double lost : scratch_.gone) state_.ledger.fracture += lost;
+  for (const double lost : in_chunks<double>(others, followed_chunk, threads_, followed)) state_.ledger.fracture += lost;
+  note_breaks(time);
+  if (is_unsettled(state_)) settle(plan_, state_, scratch_);
+}
+
+template <class Real>
+double Fdem<Real>::stored_in_joints() const {
+  const View<Real> v = view();
+  const auto springs = [&](Blocks blocks) { return kernels_.stored(v, blocks); };
+  const auto followed = [&](Blocks blocks) { return kernels_.stored_by_followed(v, blocks); };
+  double sum = 0.0;
+  for (const double part : in_chunks<double>(scratch_.springs.blocks(), triangle_chunk, threads_, springs)) sum += part;
+  for (const double part : in_chunks<double>(scratch_.followed.blocks(), triangle_chunk, threads_, followed)) sum += part;
+  return sum;
+}
+
+#define FRACFARM_INSTANTIATE(Real)                           \
+  template AdvanceSums Fdem<Real>::advance(double);          \
+  template TriangleSums Fdem<Real>::measure(double) const;   \
+  template void Fdem<Real>::join();                          \
+  template AdvanceSums Fdem<Real>::advance_and_join(double); \
+  template void Fdem<Real>::soften(double);                  \
+  template double Fdem<Real>::stored_in_joints() const;
+FRACFARM_INSTANTIATE(double)
+FRACFARM_INSTANTIATE(float)
+#undef FRACFARM_INSTANTIATE
+
+}  // namespace fracfarm::fdem
