@@ -83,6 +83,11 @@ int main(int argc, char** argv) {
       ->add_option("--meshes", mesh.meshes, "Seeds of each size")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  FdemGmshQuestion gmsh;
+  gmsh.choice.materials = {"shale", "tungsten"}, gmsh.choice.patterns = 8;
+  add_fdem_study(app, "fdem-gmsh", "The body's answer on our meshes and on gmsh's; 1 where a mean moves by more than 2 %", gmsh, fdem_gmsh,
+                 status)
+      ->add_option("--folder", gmsh.folder, "For gmsh's files");
   FdemStabilityQuestion stability;
   stability.choice.patterns = 1;
   add_fdem_study(app, "fdem-stability", "The edge of FDEM's step, predicted and observed, and runs past it", stability, fdem_stability,

@@ -62,6 +62,16 @@ struct FdemMeshQuestion {
 // 0 where stiffness and peak of every pattern are within the limit.
 int fdem_mesh(const FdemMeshQuestion& question);
 
+// The body's answer on our meshes and on those of the program gmsh, which must be installed.
+struct FdemGmshQuestion {
+  FdemChoice choice;
+  std::string folder;        // for gmsh's files; empty: a temporary one
+  double bulk_limit = 0.02;  // of the mean over patterns of stiffness, peak and drop10
+  bool json = false;
+};
+// 0 where the three means of each material are within the limit.
+int fdem_gmsh(const FdemGmshQuestion& question);
+
 // The edge of the step that is predicted against the one that is observed, and what runs past it do.
 struct FdemStabilityQuestion {
   FdemChoice choice;
