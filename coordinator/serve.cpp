@@ -20,7 +20,7 @@ namespace {
 
 using Level = CoordinatorLog::Level;
 constexpr std::size_t most_messages = 256;  // of one transaction
-constexpr double longest_batch_s = 0.005;
+constexpr double longest_batch_s = 0.02;    // of work before its sync: a sync costs milliseconds, however much it is for
 constexpr double tick_s = 0.1;
 constexpr double farewell_s = 10.0;  // for workers to say BYE where nothing is left
 

@@ -1,4 +1,4 @@
-// The coordinator as a server: sockets, timers and group commit around the reactor. Everything that waits, up to 256 messages or 5 ms, is
+// The coordinator as a server: sockets, timers and group commit around the reactor. Everything that waits, up to 256 messages or 20 ms, is
 // answered in one transaction; it is committed, and only then are the replies sent.
 #pragma once
 
