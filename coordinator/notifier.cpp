@@ -36,7 +36,13 @@ Child start(const std::string& command) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  sigset_t none, pipes;
+  ::sigemptyset(&none);
+  ::sigemptyset(&pipes);
+  ::sigaddset(&pipes, SIGPIPE);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &pipes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   std::string shell = "/bin/sh", flag = "-c", text = command;
   std::array<char*, 4> words{shell.data(), flag.data(), text.data(), nullptr};
   Child child{-1, pipe[1]};
@@ -101,7 +107,12 @@ std::vector<std::string> Notifier::take_complaints() {
   return std::exchange(complaints_, {});
 }
 
+// A command that reads nothing may have ended before it is written to: that is no reason for this program to end.
 void Notifier::serve() {
+  sigset_t pipes;
+  ::sigemptyset(&pipes);
+  ::sigaddset(&pipes, SIGPIPE);
+  ::pthread_sigmask(SIG_BLOCK, &pipes, nullptr);
   const auto never = std::chrono::steady_clock::time_point::max();
   auto last = never;
   for (;;) {
