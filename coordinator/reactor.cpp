@@ -145,6 +145,8 @@ wire::Reply Reactor::on_hello(const std::string& peer, const wire::Hello& hello,
   if (std::optional<wire::Reply> refusal = wrong_build(hello.build_id)) return *refusal;
   if (had_later_life(ledger_.reading(), peer, hello.instance))
     return refuse(fmt::format("{} has started again since: this HELLO is of an earlier life", peer));
+  if (const auto gone = gone_.find(peer); gone != gone_.end() && gone->second == hello.instance)
+    return refuse(fmt::format("{} has said BYE since: this HELLO was long under way", peer));
   const std::int64_t worker = ledger_.register_worker(peer, hello, now.wall_s);
   wire::Welcome welcome{epoch_, settings_.beat_interval_s, settings_.lease_timeout_s, {}};
   for (const wire::HeldLease& held : hello.held) welcome.rulings.push_back(rule_on(peer, held, worker, now));
@@ -195,17 +197,21 @@ wire::Reply Reactor::on_bye(const std::string& peer, const wire::Bye& bye, Insta
   if (const auto session = roster_.find(peer); session != roster_.end()) {
     ledger_.end_worker(session->second.worker, now.wall_s);
     note(fmt::format("{} says bye, {} leases returned", peer, bye.returned.size()));
+    gone_[peer] = session->second.instance;
     roster_.erase(session);
   }
   return wire::ByeReply{};
 }
 
 bool Reactor::tick(Instant now) {
-  // Not having run for a while is this program's own doing (stopped, starved, suspended): nobody's lease ends for it.
+  // Not having run for a while is this program's own doing (stopped, starved, suspended): nobody's lease ends for it, and nobody was
+  // silent.
   const double away_s = now.monotonic_s - ticked_s_;
   ticked_s_ = now.monotonic_s;
-  if (away_s > settings_.lease_timeout_s / 3.0)
+  if (away_s > settings_.lease_timeout_s / 3.0) {
     for (auto& [lease, held] : held_) held.deadline_s = std::max(held.deadline_s, now.monotonic_s + settings_.lease_timeout_s);
+    for (auto& [peer, session] : roster_) session.seen_s = now.monotonic_s;
+  }
   expire_leases(now);
   wake_waiting(now);
   forget_silent(now);

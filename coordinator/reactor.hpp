@@ -47,7 +47,7 @@ class Reactor {
   bool tick(Instant now);
 
   bool settled();                                         // nothing is left to do in the ledger
-  bool anybody_here() const { return !roster_.empty(); }  // workers that have said HELLO and not BYE
+  std::size_t workers_here() const { return roster_.size(); }  // that have said HELLO and not BYE
   std::uint64_t epoch() const { return epoch_; }
   std::vector<std::string> take_events();  // one line each, for the log
   std::vector<Notice> take_notices();      // for the notify hook
@@ -93,8 +93,8 @@ class Reactor {
   Claimant claimant_of(const Session& session, int most) const;
   struct Pick;
   std::vector<Pick> pick(const Claimant& claimant, const std::vector<Job>& jobs, std::vector<Lane>& lanes);
-  std::vector<Job> fitting_jobs(const Claimant& claimant, Instant now);
-  std::vector<Lane> fitting_lanes(const Claimant& claimant);
+  std::vector<Job> fitting_jobs(const Claimant& claimant, TooLong& too_long, Instant now);
+  std::vector<Lane> fitting_lanes(const Claimant& claimant, TooLong& too_long);
   std::optional<Candidate> candidate_of(const Job& job);
   double wall_budget_s(std::int64_t campaign);
   std::optional<wire::Assignment> assign_untouched(const Lane& lane, std::int64_t id, const Session& session, Instant now);
@@ -129,6 +129,7 @@ class Reactor {
   std::uint64_t epoch_ = 0;
   std::uint64_t counter_ = 0;
   Roster roster_;
+  std::map<std::string, std::string> gone_;  // peer -> its start that said BYE last: a copy of its HELLO is no worker
   RateMeter rate_;
   std::deque<Outrun> outrun_;               // leases whose jobs others finished first: their results are still duplicates, not lies
   std::map<LeaseKey, Held> held_;            // deadlines of LEASED jobs; the ledger says whose they are

@@ -39,10 +39,12 @@ void Reactor::hand_out(Session& session, int free_slots, wire::Jobs& reply, Inst
   reply.wait_s = std::clamp(static_cast<double>(roster_.size()) / 200.0, 0.5, 10.0);
 }
 
-// An allocation costs whether it works or not: one that has had nothing for a while, and holds nothing, is given back early.
+// An allocation costs whether it works or not: one that holds nothing is given back early, at once where all work that there is is known to
+// take longer than is left, after a while where there is none or its time is not known yet.
 bool Reactor::give_up_allocation(const std::string& peer, Session& session, Instant now) {
   if (session.remaining_s < 0.0 || session.idle_since_s < 0.0) return false;
-  if (now.monotonic_s - session.idle_since_s < settings_.idle_return_s) return false;
+  const bool at_once = session.too_long.known && !session.too_long.unknown;
+  if (!at_once && now.monotonic_s - session.idle_since_s < settings_.idle_return_s) return false;
   const bool holds_something = std::any_of(held_.begin(), held_.end(), [&](const auto& it) { return it.second.worker == session.worker; });
   if (holds_something) return false;
   note(fmt::format("{} on {} ends early: nothing has fitted the {:.0f} s that its allocation has left", peer, session.node,
@@ -103,11 +105,12 @@ void Reactor::give_jobs(Session& session, int most, wire::Jobs& reply, Instant n
     learned_at_s_ = now.monotonic_s;
   }
   const std::size_t want = reply.assignments.size() + static_cast<std::size_t>(std::max(0, most));
+  session.too_long = {};
   bool again = true;
   for (int round = 0; again && round < most_rounds && reply.assignments.size() < want; ++round) {
     const Claimant claimant = claimant_of(session, static_cast<int>(want - reply.assignments.size()));
-    const std::vector<Job> jobs = fitting_jobs(claimant, now);
-    const std::vector<Lane> before = fitting_lanes(claimant);
+    const std::vector<Job> jobs = fitting_jobs(claimant, session.too_long, now);
+    const std::vector<Lane> before = fitting_lanes(claimant, session.too_long);
     std::vector<Lane> lanes = before;
     again = false;
     for (const Pick& it : pick(claimant, jobs, lanes)) {
@@ -141,7 +144,7 @@ double Reactor::wall_budget_s(std::int64_t campaign) {
 }
 
 // Looks at READY jobs a page at a time, so that jobs which do not fit this claimant hide none that do; the number of pages is bounded.
-std::vector<Job> Reactor::fitting_jobs(const Claimant& claimant, Instant now) {
+std::vector<Job> Reactor::fitting_jobs(const Claimant& claimant, TooLong& too_long, Instant now) {
   std::vector<Job> fitting;
   std::set<std::string> nodes;
   ClaimCursor cursor;
@@ -154,14 +157,17 @@ std::vector<Job> Reactor::fitting_jobs(const Claimant& claimant, Instant now) {
     for (Job& job : jobs) {
       const std::optional<Candidate> it = candidate_of(job);
       if (!it || better_elsewhere(*it, claimant, nodes) || larger_elsewhere(it->memory_floor, claimant)) continue;
-      if (nobody_before.fits(it->job_class, it->wall_budget_s)) fitting.push_back(std::move(job));
+      if (nobody_before.fits(it->job_class, it->wall_budget_s))
+        fitting.push_back(std::move(job));
+      else
+        too_long.count(longest_try(it->job_class, it->wall_budget_s, learned_, claimant.node_type).learned);
     }
   }
   return fitting;
 }
 
 // The first of the lanes that this claimant may have something of: no claim reaches into more lanes than it has jobs.
-std::vector<Lane> Reactor::fitting_lanes(const Claimant& claimant) {
+std::vector<Lane> Reactor::fitting_lanes(const Claimant& claimant, TooLong& too_long) {
   std::vector<Lane> fitting;
   int priority = INT_MAX;
   std::int64_t after = 0;
@@ -171,10 +177,14 @@ std::vector<Lane> Reactor::fitting_lanes(const Claimant& claimant) {
     if (lanes.empty()) break;
     priority = lanes.back().priority;
     after = lanes.back().next;
-    for (const Lane& lane : lanes)
-      if (!paused_.contains(lane.job_class) && book_.open(ledger_.reading(), lane.campaign) &&
-          nobody_before.fits(lane.job_class, wall_budget_s(lane.campaign)))
+    for (const Lane& lane : lanes) {
+      if (paused_.contains(lane.job_class) || !book_.open(ledger_.reading(), lane.campaign)) continue;
+      const double budget_s = wall_budget_s(lane.campaign);
+      if (nobody_before.fits(lane.job_class, budget_s))
         fitting.push_back(lane);
+      else
+        too_long.count(longest_try(lane.job_class, budget_s, learned_, claimant.node_type).learned);
+    }
   }
   return fitting;
 }

@@ -25,6 +25,12 @@ inline constexpr double fast_fault_s = 10.0;                          // a fault
 inline constexpr std::size_t kept_replies = 4;                        // for requests that come twice
 inline constexpr std::uint64_t widest_step = std::uint64_t{1} << 32;  // between two requests of one life
 
+// Whether there was work that takes longer than a worker has left: by the times that were learned, or by its budget, as none are known yet.
+struct TooLong {
+  bool known = false, unknown = false;
+  void count(bool learned) { (learned ? known : unknown) = true; }
+};
+
 // One worker daemon, by the authenticated name of its key.
 struct Session {
   std::int64_t worker = 0;  // row of the ledger
@@ -38,6 +44,7 @@ struct Session {
   std::uint64_t memory_bytes = 0;
   bool draining = false;
   double idle_since_s = -1.0;  // asked and got nothing since then; < 0: it has work
+  TooLong too_long = {};       // at its last claim
   std::uint64_t newest_request = 0;
   std::deque<std::pair<std::uint64_t, wire::Reply>> replies;
 

@@ -144,6 +144,7 @@ class Session {
   wire::Request make_hello();
   wire::Request make_next(int wanted);
   wire::Request make_beat();
+  double remaining_s() const;
   int wanted() const;
   bool should_report(int wanted) const;
   bool anything_to_report() const { return !completed_.empty() || !failed_.empty() || !returned_.empty(); }

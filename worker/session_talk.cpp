@@ -64,10 +64,12 @@ std::optional<wire::Request> Session::next_request() {
 wire::Request Session::make_hello() {
   under_way_.hello = true;
   under_way_.held = held();
-  const double remaining = options_.end_at ? std::max(0.0, *options_.end_at - now_) : -1.0;
   return wire::Hello{options_.node,     options_.instance, options_.slots, options_.memory_bytes,
-                     options_.build_id, remaining,         under_way_.held};
+                     options_.build_id, remaining_s(),     under_way_.held};
 }
+
+// Until what runs is stopped: what is asked for must end before that.
+double Session::remaining_s() const { return options_.end_at ? std::max(0.0, *options_.end_at - options_.end_margin_s - now_) : -1.0; }
 
 wire::Request Session::make_beat() {
   under_way_.held = held();
@@ -76,8 +78,7 @@ wire::Request Session::make_beat() {
 }
 
 wire::Request Session::make_next(int want) {
-  wire::Next next{front(completed_), front(failed_), front(returned_), want, -1.0};
-  if (options_.end_at) next.remaining_s = std::max(0.0, *options_.end_at - now_);
+  wire::Next next{front(completed_), front(failed_), front(returned_), want, remaining_s()};
   under_way_.completed = next.completed.size();
   under_way_.failed = next.failed.size();
   under_way_.returned = next.returned.size();

@@ -119,12 +119,13 @@ TEST_CASE("A lease without beats ends after its timeout, one with beats does not
   CHECK(farm.job(beaten.job).state == State::leased);
 }
 
-TEST_CASE("A coordinator that was away itself lets nobody's lease end for it") {
+TEST_CASE("A coordinator that was away itself lets nobody's lease end for it and forgets nobody") {
   Farm farm(1);
   farm.hello("worker-a", "n1");
   const wire::Assignment it = farm.one("worker-a");
   farm.tick(3600.0);
   CHECK(farm.job(it.job).state == State::leased);
+  CHECK(farm.beat("worker-a", {held(it)}).rulings == std::vector{wire::Ruling::adopt});
   farm.pass(32.0);
   CHECK(farm.job(it.job).state != State::leased);
 }
@@ -352,20 +353,33 @@ TEST_CASE("A rejected scene is a result without a record") {
   CHECK(farm.job(it.job).outcome->verdict == Verdict::rejected);
 }
 
-TEST_CASE("An allocation that nothing fits any more is given back early, but not while it holds something") {
-  Farm farm(3);
+TEST_CASE("An allocation that nothing fits any more is given back at once, but not while it holds something") {
+  Farm farm(40);
+  farm.hello("worker-a", "n1");
+  for (std::uint64_t n = 0; n < enough_history; ++n) farm.complete("worker-a", result_of(farm.one("worker-a")));
+  farm.pass(10.0);  // the times are learned
   farm.hello("worker-a", "n1");
   const wire::Assignment it = farm.claim("worker-a", 1, 4000.0).assignments.at(0);
-  CHECK(farm.claim("worker-a", 1, 3000.0).order == wire::Order::wait);
-  for (int n = 0; n < 40; ++n) {
-    farm.pass(2.0);
-    farm.beat("worker-a", {held(it)});
-  }
-  CHECK(farm.claim("worker-a", 1, 2900.0).order == wire::Order::wait);
+  CHECK(farm.claim("worker-a", 1, 5.0).order == wire::Order::wait);
   farm.complete("worker-a", result_of(it));
-  CHECK(farm.claim("worker-a", 1, 2890.0).order == wire::Order::drain);
+  CHECK(farm.claim("worker-a", 1, 4.0).order == wire::Order::drain);
   farm.hello("worker-b", "n2");
   CHECK(farm.claim("worker-b", 1, -1.0).assignments.size() == 1);  // one without an end is not concerned
+}
+
+TEST_CASE("An allocation for which there is no work, or none whose time is known, waits a while before it is given back") {
+  const bool unknown = GENERATE(false, true);
+  Farm farm(unknown ? 2 : 1);
+  farm.hello("worker-a", "n1");
+  farm.hello("worker-b", "n2");
+  const wire::Assignment it = farm.claim("worker-b", 1).assignments.at(0);
+  const double left_s = unknown ? 3000.0 : 9000.0;  // the budget of a job is an hour
+  for (double passed_s = 0.0; passed_s < farm.settings.idle_return_s; passed_s += 2.0) {
+    CHECK(farm.claim("worker-a", 1, left_s).order == wire::Order::wait);
+    farm.beat("worker-b", {held(it)});
+    farm.pass(2.0);
+  }
+  CHECK(farm.claim("worker-a", 1, left_s).order == wire::Order::drain);
 }
 
 TEST_CASE("Explain says that the whole budget counts until results of the class are known") {

@@ -59,3 +59,14 @@ TEST_CASE(
   CHECK(std::holds_alternative<wire::Welcome>(farm.hello("w", "node", "i2", {held(it)})));
   CHECK(farm.complete("w", result_of(it)) == wire::Receipt::accepted);
 }
+
+TEST_CASE("A copy of the HELLO of a start that has said BYE makes no worker of it, and its claims get nothing") {
+  Farm farm(8);
+  const wire::Hello hello{"node", "i1", 4, 1u << 30, build, -1.0, {}};
+  farm.tell("w", hello, 10);
+  farm.tell("w", wire::Bye{}, 15);
+  CHECK(std::holds_alternative<wire::Refusal>(farm.tell("w", hello, 10)));
+  CHECK(std::holds_alternative<wire::Refusal>(farm.tell("w", wire::Next{{}, {}, {}, 1, -1.0}, 11)));
+  CHECK(leased(farm) == 0);
+  CHECK(std::holds_alternative<wire::Welcome>(farm.hello("w", "node", "i2")));
+}
