@@ -47,7 +47,7 @@ class Reactor {
   bool tick(Instant now);
 
   bool settled();                                         // nothing is left to do in the ledger
-  std::size_t workers_here() const { return roster_.size(); }  // that have said HELLO and not BYE
+  bool anybody_here() const { return !roster_.empty(); }  // workers that have said HELLO and not BYE
   std::uint64_t epoch() const { return epoch_; }
   std::vector<std::string> take_events();  // one line each, for the log
   std::vector<Notice> take_notices();      // for the notify hook
