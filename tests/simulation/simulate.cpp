@@ -44,6 +44,7 @@ int simulate(const Options& options, const Settings& settings) {
       ++broken_seeds;
       fmt::print("seed {}: {}\n  replay it with: fracfarm-simulate --seed {}{} --tell\n", seed, broken, seed,
                  options.bug.empty() ? "" : " --bug " + options.bug);
+      std::fflush(stdout);
     }
     const double elapsed_s = clock.monotonic_s() - began_s;
     if (elapsed_s > 2.0 && n % 16 == 0)
