@@ -9,7 +9,8 @@ namespace fracfarm::wire {
 namespace {
 
 constexpr double look_interval_s = 0.25;
-constexpr double longest_trust_s = 5.0;  // in a folder whose time is unchanged: a file may be written in place
+constexpr double stranger_interval_s = 0.01;  // for a key that was not there: it may have been made since, and its first message counts
+constexpr double longest_trust_s = 5.0;       // in a folder whose time is unchanged: a file may be written in place
 constexpr auto clock_tick = std::chrono::seconds(2);
 
 }  // namespace
@@ -40,7 +41,8 @@ std::string Admission::name_of_key(const std::string& public_key) {
 }
 
 bool Admission::still_allowed(const std::string& name, const std::string& public_key, double now_s) {
-  if (now_s - looked_s_ > look_interval_s) {
+  const double interval_s = names_.contains(public_key) ? look_interval_s : stranger_interval_s;
+  if (now_s - looked_s_ > interval_s) {
     looked_s_ = now_s;
     if (may_have_changed() || now_s - reloaded_s_ > longest_trust_s) {
       reload();

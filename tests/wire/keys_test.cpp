@@ -92,3 +92,12 @@ TEST_CASE("a moment in which no file can be opened takes nobody's key away, and 
   std::filesystem::remove(farm.path / "keys/allowed/worker-x.pub");
   CHECK_FALSE(admission.still_allowed("worker-x", key, 3000.0));
 }
+
+TEST_CASE("the first message of a key that was made a moment ago is heard") {
+  const TempFarm farm;
+  REQUIRE(load_or_make_key(farm.path, "worker-x").has_value());
+  Admission admission(farm.path);
+  CHECK_FALSE(admission.still_allowed("worker-y", "no key", 1000.0));
+  const std::string key = load_or_make_key(farm.path, "worker-y").value().public_key;
+  CHECK(admission.still_allowed("worker-y", key, 1000.05));
+}
