@@ -113,7 +113,10 @@ Tally work(const Options& options, int number, int batch, double seconds) {
   if (!client) return tally;
   const auto hello = wire::Hello{
       fmt::format("node-{}", number), fmt::format("{}-{}-{}", number, batch, ::getpid()), batch, 1u << 30, build_info().build_id, -1.0, {}};
-  if (!client->ask(hello, 60.0)) return tally;
+  if (const auto welcome = client->ask(hello, 60.0); !welcome) {
+    fmt::print(stderr, "worker {}: {}\n", number, welcome.error().message);
+    return tally;
+  }
   std::vector<wire::Completion> finished;
   const auto began = Steady::now();
   for (std::uint64_t n = 0; since(began) < seconds;) {
