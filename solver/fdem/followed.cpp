@@ -70,7 +70,7 @@ void find_ready(const Plan& plan, JointList<Real>& list) {
 template <class Real>
 void add_followed_block(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int law) {
   add_block_of_pads(plan, scratch.followed, law);
-  scratch.breaks.push_back(0), scratch.grew.push_back(1);
+  scratch.breaks.push_back(0), scratch.grew.push_back(0xffff);
   scratch.kept.insert(scratch.kept.end(), 2 * lanes, Real(1));
   state.damage.insert(state.damage.end(), 2 * lanes, Real(0));
   state.opening.insert(state.opening.end(), 4 * lanes, Real(0)), state.force.insert(state.force.end(), 4 * lanes, Real(0));

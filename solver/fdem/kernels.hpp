@@ -66,7 +66,7 @@ struct View {
   Real *damage, *kept;     // [b][2][l], at the two points; and the curve's z of it
   Real *opening, *force;   // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
   unsigned char* breaks;   // [b]: becomes 1 where a followed joint of the block broke
-  unsigned char* grew;     // [b]: becomes 1 where one was damaged further
+  unsigned short* grew;    // [b]: bit l becomes 1 where the one in lane l was damaged further
   const law::Joint<Real>* joint_laws;
   Curve curve;
   bool always_flow;    // the radial return in every block

@@ -62,10 +62,11 @@ void Fdem<Real>::remember_told() const {
 template <class Real>
 Powers Fdem<Real>::power_of_told(double dt) const {
   Powers powers{};
+  const double per_dt = 1.0 / dt;
   for (Index i = 0; i < model_.told_dofs.size(); ++i) {
     const ToldDof& dof = model_.told_dofs[i];
     const double before = scratch_.told_before[i], after = scratch_.told_velocity[dof.at_told];
-    const double force = dof.mass * (after - before) / dt - static_cast<double>(scratch_.told_force[dof.at_told]);
+    const double force = dof.mass * (after - before) * per_dt - static_cast<double>(scratch_.told_force[dof.at_told]);
     powers.before += force * before, powers.after += force * after;
   }
   return powers;

@@ -89,16 +89,17 @@ struct Scratch {
   std::vector<unsigned char> softens;  // by block of springs
   JointList<Real> followed;            // those settled, and in blocks of their own those that came after
   int settled_blocks = 0;
-  std::vector<double> gone;                 // J/m, by chunk of the settled blocks, in a step
-  Field<Real> kept;                         // of followed joints: as in View
-  std::vector<unsigned char> breaks, grew;  // by block of followed joints
-  std::vector<int> place_of, spring_of;     // place of a joint among the followed ones, -1: a spring; and among the springs
-  std::vector<int> free_place;              // by law: next place in its last block, a multiple of `lanes` where that is full
-  Field<Real> rows;                         // of u
-  Field<Real> told_velocity, told_force;    // of the told blocks
-  std::vector<double> told_before;          // by told degree of freedom, m/s, half a step before
-  std::vector<unsigned char> needs;         // by triangle block
-  std::vector<int> extra_slots;             // whose rows of `extra` may be other than 0
+  std::vector<double> gone;  // J/m, by chunk of the settled blocks, in a step
+  Field<Real> kept;          // of followed joints: as in View
+  std::vector<unsigned char> breaks;      // by block of followed joints
+  std::vector<unsigned short> grew;       // the same
+  std::vector<int> place_of, spring_of;   // place of a joint among the followed ones, -1: a spring; and among the springs
+  std::vector<int> free_place;            // by law: next place in its last block, a multiple of `lanes` where that is full
+  Field<Real> rows;                       // of u
+  Field<Real> told_velocity, told_force;  // of the told blocks
+  std::vector<double> told_before;        // by told degree of freedom, m/s, half a step before
+  std::vector<unsigned char> needs;       // by triangle block
+  std::vector<int> extra_slots;           // whose rows of `extra` may be other than 0
   StageClock<Stage, stage_names.size()> clock;
 };
 

@@ -1,8 +1,10 @@
 #include "solver/fdem/solver.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/fdem/followed.hpp"
 #include "solver/fdem/materials.hpp"
@@ -184,9 +186,8 @@ float Fdem<Real>::damage_at(Index place) const {
 template <class Real>
 void Fdem<Real>::take_damage_changes(std::vector<EdgeDamage>& changes) const {
   for (Index b = 0; b < scratch_.grew.size(); ++b) {
-    if (!scratch_.grew[b]) continue;
-    scratch_.grew[b] = 0;
-    for (Index place = b * lanes; place < (b + 1) * lanes; ++place) {
+    for (unsigned grew = std::exchange(scratch_.grew[b], 0); grew != 0; grew &= grew - 1) {
+      const Index place = b * lanes + static_cast<Index>(std::countr_zero(grew));
       const int joint = scratch_.followed.joint_at[place];
       if (joint >= 0) changes.push_back({static_cast<std::uint32_t>(plan_.edge_of[static_cast<Index>(joint)]), damage_at(place)});
     }

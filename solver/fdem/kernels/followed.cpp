@@ -58,11 +58,12 @@ INLINE bool stretch(const View& view, int b, int s, Edges& edges) {
 }
 
 template <class Curve>
-INLINE void grow(const Joint& law, const Line& line, const Point& point, Lanes& damage, Lanes& kept) {
+INLINE Mask grow(const Joint& law, const Line& line, const Point& point, Lanes& damage, Lanes& kept) {
   const law::Extent<Lanes> size = law::extent(law, point.opening);
   const Mask where = grows(line, size, point.r, damage);
   damage = select(where, law::grown(point.r, sqrt(size.rupture / line.square), damage), damage);
   kept = select(where, law::kept<Curve>(damage), kept);
+  return where;
 }
 
 // True where a joint broke.
@@ -72,7 +73,8 @@ INLINE bool soften(const View& view, int b, int s, const Edges& edges) {
   const Place at(b, s);
   Damage damage = load_pair(view.damage + at.pairs), kept = load_pair(view.kept + at.pairs);
   const Mask was_whole = is_whole(damage);
-  grow<Curve>(law, edges.line, edges.p, damage.p, kept.p), grow<Curve>(law, edges.line, edges.q, damage.q, kept.q);
+  const Mask grew = grow<Curve>(law, edges.line, edges.p, damage.p, kept.p) | grow<Curve>(law, edges.line, edges.q, damage.q, kept.q);
+  view.grew[b] |= static_cast<unsigned short>(bits(grew) << (s * width));
   store_pair(view.damage + at.pairs, damage), store_pair(view.kept + at.pairs, kept);
   return any(was_whole & ~is_whole(damage));
 }
@@ -129,7 +131,6 @@ INLINE void follow_batch(const View& view, Blocks blocks, LaneSums& gone) {
       });
   for (int n = 0; n < count; ++n) {
     const int i = growing[n], b = blocks.begin + i / parts;
-    view.grew[b] = 1;
     if (soften<Curve>(view, b, i % parts, edges[i])) view.breaks[b] = 1;
   }
   for_each(

@@ -101,6 +101,19 @@ INLINE bool any(Mask m) {
 #endif
 }
 
+// Lane l as bit l.
+INLINE unsigned bits(Mask m) {
+#ifdef FRACFARM_MASKS
+  return m.raw;
+#elif defined(__AVX2__)
+  return unsigned(sizeof(Real) == 4 ? _mm256_movemask_ps(__m256(m.raw)) : _mm256_movemask_pd(__m256d(m.raw)));
+#else
+  unsigned found = 0;
+  for (int l = 0; l < width; ++l) found |= unsigned(m.raw[l] != 0) << l;
+  return found;
+#endif
+}
+
 // Registers of consecutive numbers.
 INLINE Lanes load(const Real* from) {
   Raw raw;
