@@ -36,6 +36,13 @@ std::vector<Span> left_over(Span whole, std::vector<Span> taken) {
   return left;
 }
 
+std::vector<Span> left_over_all(const std::vector<Span>& spans, Span taken) {
+  std::vector<Span> left;
+  for (const Span& it : spans)
+    for (const Span& part : left_over(it, {taken})) left.push_back(part);
+  return left;
+}
+
 std::uint64_t size_of(const std::vector<Span>& spans) {
   std::uint64_t n = 0;
   for (const Span& it : spans) n += it.last - it.first + 1;
@@ -107,6 +114,12 @@ std::uint64_t done_in(Database& ledger, const Others& others, const JobBlock& wa
   return done;
 }
 
+// How many of a series' patterns have a position below `position`.
+std::uint64_t patterns_below(const Series& series, std::uint64_t position) {
+  if (position <= series.position) return 0;
+  return std::min(series.patterns, (position - series.position + series.stride - 1) / series.stride);
+}
+
 }  // namespace
 
 std::vector<Series> series_of(const Campaign& campaign) {
@@ -162,8 +175,10 @@ Result<void> enrol(Ledger& ledger, CampaignBook& book, std::int64_t id) {
     const std::string identity = identity_of(**campaign, series, row.build_id);
     const Result<Others> others = others_like(ledger.reading(), book, identity);
     if (!others) return tl::unexpected(others.error());
-    const std::vector<Span> own = patterns_outside((*campaign)->blocks[series.block], others->blocks());
-    shared += series.patterns - size_of(own);
+    const std::uint64_t made = patterns_below(series, row.expanded);
+    std::vector<Span> own = patterns_outside((*campaign)->blocks[series.block], others->blocks());
+    if (made > 0) own = left_over_all(own, {0, made - 1});
+    shared += series.patterns - made - size_of(own);
     const auto stride = static_cast<std::int64_t>(series.stride);
     for (const Span& it : own) {
       Lane lane{.campaign = id, .job_class = {std::string(name_of(series.first.method)), series.first.material, series.first.load}};
@@ -175,6 +190,17 @@ Result<void> enrol(Ledger& ledger, CampaignBook& book, std::int64_t id) {
     ledger.add_series(identity, {id, series.block, series.variant});
   }
   ledger.advance_campaign(id, row.total, shared);
+  return {};
+}
+
+Result<void> enrol_the_rest(Ledger& ledger) {
+  CampaignBook book;
+  for (const CampaignRow& row : campaign_rows(ledger.reading())) {
+    if (row.expanded == row.total) continue;
+    ledger.begin();
+    if (Result<void> made = enrol(ledger, book, row.id); !made) return ledger.rollback(), made;
+    ledger.commit();
+  }
   return {};
 }
 

@@ -31,9 +31,13 @@ struct Span {
 // The patterns of `block` that none of `others` has, and those that one has.
 std::vector<Span> patterns_outside(const JobBlock& block, const std::vector<const JobBlock*>& others);
 
-// Makes the lanes of a campaign that add_campaign gave; does nothing where that was done before. In the caller's transaction. Errors:
+// Makes the lanes of a campaign that add_campaign gave, for the jobs that it does not have yet. In the caller's transaction. Errors:
 // BAD_REQUEST where the campaign cannot be read.
 Result<void> enrol(Ledger& ledger, CampaignBook& book, std::int64_t campaign);
+
+// The lanes of every campaign that a release of the first schema left half made: jobs that it made keep their ids, the others follow. In
+// transactions of its own. Errors: as enrol.
+Result<void> enrol_the_rest(Ledger& ledger);
 
 // Of the jobs of a campaign, how many the ledger has, how many it has DONE. Counts, makes no scene but one a series.
 struct Known {

@@ -258,17 +258,6 @@ CREATE TRIGGER count_fault AFTER INSERT ON attempts BEGIN
 END;
 )sql";
 
-// Version 1 made the jobs of a campaign one by one; how to go on half-way only a program of that version knows.
-Result<void> demand_made_campaigns(Database& database) {
-  Rows tables = database.query("SELECT 1 FROM sqlite_schema WHERE name = 'campaigns'");
-  if (!tables.next()) return {};
-  Rows rows = database.query("SELECT name FROM campaigns WHERE expanded < total LIMIT 1");
-  if (!rows.next()) return {};
-  return fail(Fault::bad_request, fmt::format("the ledger is of an earlier release, and its campaign {} was being made into jobs: let "
-                                              "that release finish with it (fracfarm submit), then open it with this one",
-                                              rows.text(0)));
-}
-
 }  // namespace
 
 std::span<const std::string_view> migrations() {
@@ -285,8 +274,6 @@ Result<void> migrate(Database& database, std::span<const std::string_view> steps
   if (version < 0 || version > static_cast<std::int64_t>(steps.size()))
     return fail(Fault::bad_request, fmt::format("the ledger's schema is version {}, this program knows up to {}: use the later program",
                                                 version, steps.size()));
-  if (version == 1 && steps.size() > 1)
-    if (Result<void> made = demand_made_campaigns(database); !made) return made;
   for (auto at = static_cast<std::size_t>(version); at < steps.size(); ++at) {
     database.begin();
     database.script(std::string(steps[at]));

@@ -12,6 +12,7 @@
 #include "common/wire/endpoint.hpp"
 #include "common/wire/socket.hpp"
 #include "coordinator/backup_timer.hpp"
+#include "coordinator/enrolment.hpp"
 #include "coordinator/notifier.hpp"
 #include "coordinator/reactor.hpp"
 
@@ -126,6 +127,7 @@ ExitCode serve(const ServeOptions& options, const std::atomic<bool>& stop, Coord
   SystemClock clock;
   Result<Ledger> ledger = Ledger::open(paths, true, options.lock_patience_s, holder_coordinator);
   if (!ledger) return complain(log, ledger.error(), exit_unreachable);
+  if (const Result<void> made = enrol_the_rest(*ledger); !made) return complain(log, made.error(), exit_failed);
   if (const Result<void> fits = demand_build(*ledger); !fits) return complain(log, fits.error(), exit_failed);
   Result<wire::Server> server = wire::Server::bind(options.bind, options.farm);
   if (!server) return complain(log, server.error(), exit_failed);

@@ -9,6 +9,7 @@
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
 #include "common/wire/endpoint.hpp"
+#include "coordinator/enrolment.hpp"
 #include "coordinator/requests.hpp"
 
 namespace fracfarm::cli {
@@ -39,6 +40,7 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
     if (!elsewhere) {
       Result<Ledger> ledger = Ledger::open(paths, make, 0.0);  // a coordinator will not let go of it: no waiting here
       if (ledger) {
+        if (Result<void> made = enrol_the_rest(*ledger); !made) return tl::unexpected(made.error());
         link.own_ = std::make_unique<Own>(Own{std::move(*ledger), {}});
         return link;
       }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "coordinator/ledger_schema.hpp"
 #include "tests/coordinator/farm_fixture.hpp"
 
 using namespace fracfarm;
@@ -156,4 +157,36 @@ TEST_CASE("Patterns outside of others' are found in spans of indices") {
   CHECK(patterns_outside(block, {}) == std::vector<Span>{{0, 14}});
   CHECK(patterns_outside(block, {&other}) == std::vector<Span>{{0, 2}, {6, 9}, {12, 14}});
   CHECK(patterns_outside(block, {&other, &block}).empty());
+}
+
+// The jobs of positions 0 and 1 are rows, made one by one and with another's ids before them; that of position 2 was still to come.
+TEST_CASE("A campaign that a release of the first schema left half made is made to its end, and what it had stays as it was") {
+  Database database = Database::open({});
+  REQUIRE(migrate(database, migrations().first(1)));
+  database.run("INSERT INTO campaigns VALUES(1, 'half', ?1, ?2, 3, 2, 0, 0.0)", canonical_text(*parse_campaign(campaign_text(3), "test")),
+               build);
+  for (const int position : {0, 1})
+    database.run(
+        "INSERT INTO jobs(id, key, campaign, position, method, material, load, crack_set, sample_id, state) VALUES(?1, randomblob(32), 1, "
+        "?2, "
+        "'phase_field', 'pbx', 'uniaxial', 'orthogonal', ?3, ?4)",
+        7 + position, position, position + 1, position == 0 ? "READY" : "QUARANTINED");
+  Ledger ledger = std::move(Ledger::over(std::move(database)).value());
+  REQUIRE(enrol_the_rest(ledger));
+  REQUIRE(enrol_the_rest(ledger));  // nothing more
+  CampaignBook book;
+  const std::vector<Job> jobs = list_jobs(ledger.reading(), book, {});
+  REQUIRE(jobs.size() == 3);
+  CHECK(jobs[0].id == 7);
+  CHECK(jobs[1].state == State::quarantined);
+  CHECK(jobs[2].id > 8);
+  CHECK(jobs[2].position == 2);
+  CHECK(jobs[2].sample_id == 3);
+  CHECK(jobs[2].state == State::ready);
+  std::uint64_t counted = 0, recounted = 0;
+  for (const CountRow& row : count_rows(ledger.reading())) counted += row.n;
+  for (const CountRow& row : recount_rows(ledger.reading())) recounted += row.n;
+  CHECK(counted == 3);
+  CHECK(recounted == 3);
+  CHECK(campaign_row(ledger.reading(), 1)->expanded == 3);
 }

@@ -249,12 +249,3 @@ TEST_CASE("Writing a job's row makes no table of SQLite's own, so that it stays 
     CHECK(tables == 0);
   }
 }
-
-TEST_CASE("A ledger of the first schema whose campaign was half made is refused in words") {
-  Database database = Database::open({});
-  REQUIRE(migrate(database, migrations().first(1)));
-  database.script("INSERT INTO campaigns VALUES(1, 'half', '{}', 'b', 3, 2, 0, 0.0)");
-  const Result<void> refused = migrate(database);
-  REQUIRE_FALSE(refused);
-  CHECK(refused.error().message.find("half") != std::string::npos);
-}
