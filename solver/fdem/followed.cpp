@@ -50,19 +50,21 @@ void make_pad(const Plan& plan, JointList<Real>& list, Index place) {
   list.length[place] = Real(0), list.joint_at[place] = -1;
 }
 
-// See JointList::ready.
+// See JointList::ready and first_chunk.
 template <class Real>
 void find_ready(const Plan& plan, JointList<Real>& list) {
   list.ready.assign(static_cast<Index>((plan.triangle_blocks() + triangle_chunk - 1) / triangle_chunk), 0);
-  Index chunk = 0;
+  list.first_chunk.assign(list.law_of_block.size(), static_cast<int>(list.ready.size()));
+  int last = 0;
   for (Index place = 0; place < list.joint_at.size(); ++place) {
     const int joint = list.joint_at[place];
+    int& first = list.first_chunk[place / lanes];
     if (joint >= 0) {
       const Index j = static_cast<Index>(joint);
-      const int slot = std::max(plan.left_side[j], plan.right_side[j]) / 3;
-      chunk = std::max(chunk, static_cast<Index>(slot / (lanes * triangle_chunk)));
+      const auto [earlier, later] = std::minmax(plan.left_side[j], plan.right_side[j]);
+      first = std::min(first, earlier / (3 * lanes * triangle_chunk)), last = std::max(last, later / (3 * lanes * triangle_chunk));
     }
-    if (place % lanes == lanes - 1) list.ready[chunk] = static_cast<int>(place / lanes) + 1;
+    if (place % lanes == lanes - 1) list.ready[static_cast<Index>(last)] = static_cast<int>(place / lanes) + 1;
   }
   for (Index c = 1; c < list.ready.size(); ++c) list.ready[c] = std::max(list.ready[c], list.ready[c - 1]);
 }

@@ -75,7 +75,8 @@ struct JointList {
   std::vector<int> left_row, right_row, left_slot, right_slot, law_of_block;
   Field<Real> length, along;
   std::vector<int> joint_at;
-  std::vector<int> ready;  // by chunk of triangles: so many blocks, from the first, are of these triangles and those before alone
+  std::vector<int> ready;        // by chunk of triangles: so many blocks, from the first, are of these triangles and those before alone
+  std::vector<int> first_chunk;  // by block: of triangles
   int blocks() const { return static_cast<int>(law_of_block.size()); }
   JointPlaces<Real> places() const {
     return {left_row.data(), right_row.data(), left_slot.data(), right_slot.data(), length.data(), along.data(), law_of_block.data()};
@@ -89,8 +90,8 @@ struct Scratch {
   std::vector<unsigned char> softens;  // by block of springs
   JointList<Real> followed;            // those settled, and in blocks of their own those that came after
   int settled_blocks = 0;
-  std::vector<double> gone;  // J/m, by chunk of the settled blocks, in a step
-  Field<Real> kept;          // of followed joints: as in View
+  std::vector<double> gone;               // J/m, by chunk of the settled blocks, in a step
+  Field<Real> kept;                       // of followed joints: as in View
   std::vector<unsigned char> breaks;      // by block of followed joints
   std::vector<unsigned short> grew;       // the same
   std::vector<int> place_of, spring_of;   // place of a joint among the followed ones, -1: a spring; and among the springs

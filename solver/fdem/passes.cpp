@@ -58,25 +58,66 @@ void Fdem<Real>::join() {
   scratch_.gone = in_chunks<double>(scratch_.settled_blocks, followed_chunk, threads_, followed);
 }
 
+// Blocks from the first that are of the triangles before this chunk alone.
+template <class Real>
+int ready_before(const JointList<Real>& list, int chunk) {
+  return chunk == 0 || list.ready.empty() ? 0 : list.ready[static_cast<Index>(chunk - 1)];
+}
+
+template <class Real>
+void Fdem<Real>::join_springs(const View<Real>& v, Share& share, int chunk) const {
+  const Blocks ready{ready_before(scratch_.springs, chunk), ready_before(scratch_.springs, chunk + 1)};
+  int run = ready.begin;
+  for (int b = ready.begin; b < ready.end; ++b) {
+    if (scratch_.springs.first_chunk[static_cast<Index>(b)] >= share.begin) continue;
+    kernels_.join(v, {run, b});
+    share.springs.push_back(b), run = b + 1;
+  }
+  kernels_.join(v, {run, ready.end});
+}
+
+template <class Real>
+void Fdem<Real>::join_followed(const View<Real>& v, Share& share, int chunk) const {
+  const auto whole = [&](int blocks) {
+    return blocks == scratch_.settled_blocks ? chunks_in(blocks, followed_chunk) : blocks / followed_chunk;
+  };
+  const std::vector<int>& first = scratch_.followed.first_chunk;
+  for (int f = whole(ready_before(scratch_.followed, chunk)); f < whole(ready_before(scratch_.followed, chunk + 1)); ++f) {
+    const Blocks blocks = chunk_of(f, scratch_.settled_blocks, followed_chunk);
+    if (*std::min_element(first.begin() + blocks.begin, first.begin() + blocks.end) >= share.begin)
+      scratch_.gone[static_cast<Index>(f)] = kernels_.follow(v, blocks);
+    else
+      share.followed.push_back(f);
+  }
+}
+
 // A chunk of triangles, and then those joints both of whose triangles have moved, while these are still in the cache.
 template <class Real>
 AdvanceSums Fdem<Real>::advance_and_join(double dt) {
   const View<Real> v = view();
-  AdvanceSums all{};
-  scratch_.gone.clear();
-  int springs = 0, followed = 0;
-  for (int chunk = 0; chunk < chunks_in(plan_.triangle_blocks(), triangle_chunk); ++chunk) {
-    add(all, kernels_.advance(v, chunk_of(chunk, plan_.triangle_blocks(), triangle_chunk), static_cast<Real>(dt)));
-    scratch_.clock.end(Stage::triangles);
-    const int ready = scratch_.springs.ready[static_cast<Index>(chunk)];
-    kernels_.join(v, {springs, ready});
-    springs = ready;
-    const int ready_followed = scratch_.followed.ready.empty() ? 0 : scratch_.followed.ready[static_cast<Index>(chunk)];
-    for (; chunk_of(followed, scratch_.settled_blocks, followed_chunk).end <= ready_followed && followed * followed_chunk < ready_followed;
-         ++followed)
-      scratch_.gone.push_back(kernels_.follow(v, chunk_of(followed, scratch_.settled_blocks, followed_chunk)));
-    scratch_.clock.end(Stage::joints);
+  const int chunks = chunks_in(plan_.triangle_blocks(), triangle_chunk);
+  std::vector<AdvanceSums> sums(static_cast<Index>(chunks));
+  scratch_.gone.assign(static_cast<Index>(chunks_in(scratch_.settled_blocks, followed_chunk)), 0.0);
+  std::vector<Share> shares;
+  for (int t = 0; t < threads_; ++t) shares.push_back({chunks * t / threads_, chunks * (t + 1) / threads_});
+#pragma omp parallel for num_threads(threads_) schedule(static, 1) if (threads_ > 1)
+  for (int t = 0; t < threads_; ++t) {
+    Share& share = shares[static_cast<Index>(t)];
+    for (int chunk = share.begin; chunk < share.end; ++chunk) {
+      sums[static_cast<Index>(chunk)] =
+          kernels_.advance(v, chunk_of(chunk, plan_.triangle_blocks(), triangle_chunk), static_cast<Real>(dt));
+      if (t == 0) scratch_.clock.end(Stage::triangles);
+      join_springs(v, share, chunk), join_followed(v, share, chunk);
+      if (t == 0) scratch_.clock.end(Stage::joints);
+    }
   }
+  for (const Share& share : shares) {
+    for (const int b : share.springs) kernels_.join(v, {b, b + 1});
+    for (const int f : share.followed)
+      scratch_.gone[static_cast<Index>(f)] = kernels_.follow(v, chunk_of(f, scratch_.settled_blocks, followed_chunk));
+  }
+  AdvanceSums all{};
+  for (const AdvanceSums& part : sums) add(all, part);
   return all;
 }
 
@@ -104,12 +145,14 @@ double Fdem<Real>::stored_in_joints() const {
   return sum;
 }
 
-#define FRACFARM_INSTANTIATE(Real)                           \
-  template AdvanceSums Fdem<Real>::advance(double);          \
-  template TriangleSums Fdem<Real>::measure(double) const;   \
-  template void Fdem<Real>::join();                          \
-  template AdvanceSums Fdem<Real>::advance_and_join(double); \
-  template void Fdem<Real>::soften(double);                  \
+#define FRACFARM_INSTANTIATE(Real)                                               \
+  template AdvanceSums Fdem<Real>::advance(double);                              \
+  template TriangleSums Fdem<Real>::measure(double) const;                       \
+  template void Fdem<Real>::join();                                              \
+  template void Fdem<Real>::join_springs(const View<Real>&, Share&, int) const;  \
+  template void Fdem<Real>::join_followed(const View<Real>&, Share&, int) const; \
+  template AdvanceSums Fdem<Real>::advance_and_join(double);                     \
+  template void Fdem<Real>::soften(double);                                      \
   template double Fdem<Real>::stored_in_joints() const;
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

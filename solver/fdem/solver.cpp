@@ -113,7 +113,7 @@ Result<void> Fdem<Real>::step(long long n, double dt) {
   remember_told();
   const double pulls_before = power_of_pulls(now);
   clock.end(Stage::boundary);
-  const bool at_once = threads_ == 1 && plan_.ties.empty();
+  const bool at_once = plan_.ties.empty();
   const AdvanceSums moved = at_once ? advance_and_join(dt) : advance(dt);
   clock.end(Stage::triangles);
   move_as_one(dt);

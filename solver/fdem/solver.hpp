@@ -18,6 +18,12 @@ struct Powers {
   double before, after;
 };
 
+// Chunks of triangles that one thread goes through, and which joints it leaves for when all have moved: those with a triangle of others.
+struct Share {
+  int begin, end;
+  std::vector<int> springs{}, followed{};  // blocks; chunks
+};
+
 template <class Real>
 struct EdgeNow {
   law::Ends<Real> opening;
@@ -54,6 +60,8 @@ class Fdem final : public MeshSimulation {
   TriangleSums measure(double dt) const;
   void join();
   AdvanceSums advance_and_join(double dt);
+  void join_springs(const View<Real>& view, Share& share, int chunk) const;
+  void join_followed(const View<Real>& view, Share& share, int chunk) const;
   void soften(double time);
   double stored_in_joints() const;
   void put_rows();
