@@ -12,7 +12,6 @@
 #include "common/base/terminal.hpp"
 #include "common/base/text.hpp"
 #include "common/record/check.hpp"
-#include "coordinator/cli/change.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/options.hpp"
 #include "coordinator/cli/record_places.hpp"
@@ -84,7 +83,7 @@ std::vector<Orphan> find_orphans(const std::vector<RecordPlace>& places, const s
   return orphans;
 }
 
-json report_json(std::size_t records, const std::vector<Damage>& damages, const std::vector<Orphan>& orphans) {
+json report_json(std::size_t records, const std::vector<Damage>& damages, const std::vector<Orphan>& orphans, std::uint64_t repairs) {
   json damaged = json::array(), left_over = json::array();
   for (const Damage& it : damages)
     damaged.push_back(
@@ -95,14 +94,19 @@ json report_json(std::size_t records, const std::vector<Damage>& damages, const 
           {"records", records},
           {"sound", records - damages.size()},
           {"damaged", damaged},
+          {"repairs", repairs},
           {"orphans", left_over}};
 }
 
-// DONE stays DONE; their bytes are computed again.
-void ask_repair(const FarmOptions& options, const std::vector<Damage>& damages) {
+// DONE stays DONE; their bytes are computed again. How many will be.
+Result<std::uint64_t> ask_repair(const FarmOptions& options, const std::vector<Damage>& damages) {
   json jobs = json::array();
   for (const Damage& it : damages) jobs.push_back(it.place.job);
-  (void)change(options, "recheck", {{"jobs", jobs}, {"repair", true}}, {"to be computed again:", " job", "s"});
+  Result<FarmLink> link = FarmLink::open(options.farm);
+  if (!link) return tl::unexpected(link.error());
+  const Result<wire::Answer> answer = link->ask("recheck", {{"jobs", jobs}, {"repair", true}});
+  if (!answer) return tl::unexpected(answer.error());
+  return json::parse(answer->body).value("changed", std::uint64_t{0});
 }
 
 int verify(const FarmOptions& options, bool digests_only, double sample, bool repair) {
@@ -121,13 +125,15 @@ int verify(const FarmOptions& options, bool digests_only, double sample, bool re
   const std::vector<Orphan> orphans = sample < 1.0 ? std::vector<Orphan>{} : find_orphans(places, stores);
   const std::vector<Damage> damages = audit_all(places, digests_only);
   const int exit_code = damages.empty() ? exit_ok : exit_failed;
-  if (options.json) return fmt::print("{}\n", report_json(places.size(), damages, orphans).dump(2)), exit_code;
+  const Result<std::uint64_t> repairs = !damages.empty() && repair ? ask_repair(options, damages) : Result<std::uint64_t>(0);
+  if (!repairs) return report_unreachable(repairs.error(), options.json);
+  if (options.json) return fmt::print("{}\n", report_json(places.size(), damages, orphans, *repairs).dump(2)), exit_code;
   for (const Damage& it : damages) fmt::print("{} job {}: {}\n", ink("damaged:", Ink::red, stdout), it.place.job, it.what);
   fmt::print("{} records, {} sound, {} damaged or missing\n", places.size(), places.size() - damages.size(), damages.size());
   if (!orphans.empty())
     fmt::print("{} entries of shards belong to no job: second results, or cut off before they were acknowledged; harmless\n",
                orphans.size());
-  if (!damages.empty() && repair) ask_repair(options, damages);
+  if (*repairs > 0) fmt::print("to be computed again: {} job{}\n", *repairs, *repairs == 1 ? "" : "s");
   if (!damages.empty() && !repair) fmt::print("fracfarm verify --repair, or fracfarm recheck --repair JOB, computes them again\n");
   return exit_code;
 }
