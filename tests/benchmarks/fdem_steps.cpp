@@ -1,6 +1,7 @@
 // FDEM steps on a real mesh, for each instruction set and number type that runs here: `fdem_springs` while every joint is a spring,
-// `fdem_torn` after the stress has dropped, with damage, contact and its search. s_per_triangle: CPU seconds per triangle and step; beside
-// it the stages of a step, in wall seconds per triangle. `fdem_sample` is what one row of the series costs, `fdem_edge` the step's edge.
+// `fdem_torn` after the stress has dropped, with damage, contact and its search, `fdem_softened` where a third of the joints are damaged
+// (PBX, whose joints soften all over the body). s_per_triangle: CPU seconds per triangle and step; beside it the stages of a step, in wall
+// seconds per triangle. `fdem_sample` is what one row of the series costs, `fdem_edge` the step's edge.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -20,12 +21,18 @@ namespace {
 using namespace fracfarm::fdem;
 
 constexpr int steps_at_once = 20;
-constexpr double springs_until = 3e-5, torn_after = 1.8e-4;  // s
+// Where a run stands when its steps are timed.
+struct Middle {
+  const char* material;
+  double time;  // s
+  auto operator<=>(const Middle&) const = default;
+};
+const Middle springs{"pbx5", 3e-5}, torn{"pbx5", 1.8e-4}, softened{"pbx", 4e-4};
 
-Scene plates() {
+Scene plates(const char* material) {
   Scene scene;
   scene.method = Method::fdem;
-  scene.layers = {{scene.height, *find_material("pbx5")}};
+  scene.layers = {{scene.height, *find_material(material)}};
   SideLoad pull;
   pull.to = scene.width, pull.normal_velocity = 1.0, pull.tangential = Tangential::fixed, pull.ramp = 1e-4;
   scene.loads[static_cast<std::size_t>(Side::top)] = scene.loads[static_cast<std::size_t>(Side::bottom)] = {pull};
@@ -35,7 +42,7 @@ Scene plates() {
 
 const TriangleMesh& mesh() {
   static const TriangleMesh made = [] {
-    const Scene scene = plates();
+    const Scene scene = plates("pbx5");
     return make_mesh({.width = scene.width,
                       .height = scene.height,
                       .element_size = scene.fdem.element_size,
@@ -50,10 +57,10 @@ const TriangleMesh& mesh() {
 template <class Real>
 class HalfRun {
  public:
-  HalfRun(const Kernels<Real>& kernels, double until) : run_(body_of(plates(), mesh()), settings(), {}, 1, kernels) {
+  HalfRun(const Kernels<Real>& kernels, const Middle& middle) : run_(body_of(plates(middle.material), mesh()), settings(), {}, 1, kernels) {
     dt_ = 0.7 * run_.stable_dt();
     bool sound = run_.start(dt_).has_value();
-    for (; static_cast<double>(n_) * dt_ < until && sound; ++n_) sound = run_.step(n_, dt_).has_value();
+    for (; static_cast<double>(n_) * dt_ < middle.time && sound; ++n_) sound = run_.step(n_, dt_).has_value();
     if (!sound) std::abort();  // the same run is a test of the solver
     run_.save(middle_);
   }
@@ -83,10 +90,10 @@ class HalfRun {
 
 // Google Benchmark calls a function several times to find how often it must be repeated: each run is made once.
 template <class Real>
-HalfRun<Real>& half_run(const Kernels<Real>* kernels, double until) {
-  static std::map<std::pair<const Kernels<Real>*, double>, std::unique_ptr<HalfRun<Real>>> made;
-  std::unique_ptr<HalfRun<Real>>& run = made[{kernels, until}];
-  if (!run) run = std::make_unique<HalfRun<Real>>(*kernels, until);
+HalfRun<Real>& half_run(const Kernels<Real>* kernels, const Middle& middle) {
+  static std::map<std::pair<const Kernels<Real>*, Middle>, std::unique_ptr<HalfRun<Real>>> made;
+  std::unique_ptr<HalfRun<Real>>& run = made[{kernels, middle}];
+  if (!run) run = std::make_unique<HalfRun<Real>>(*kernels, middle);
   run->go_back();
   return *run;
 }
@@ -96,8 +103,8 @@ benchmark::Counter per_triangle(double visits) {
 }
 
 template <class Real>
-void make_steps(benchmark::State& state, const Kernels<Real>* kernels, double until) {
-  HalfRun<Real>& half = half_run(kernels, until);
+void make_steps(benchmark::State& state, const Kernels<Real>* kernels, const Middle& middle) {
+  HalfRun<Real>& half = half_run(kernels, middle);
   const auto before = half.run().stage_seconds();
   for (auto _ : state) {
     state.PauseTiming();
@@ -109,17 +116,18 @@ void make_steps(benchmark::State& state, const Kernels<Real>* kernels, double un
   state.counters["s_per_triangle"] = per_triangle(visits);
   for (const auto& [stage, seconds] : half.run().stage_seconds())
     state.counters[stage] = (seconds - before.at(stage)) / (visits * static_cast<double>(state.iterations()));
+  state.counters["followed"] = static_cast<double>(half.run().state().followed.size());
 }
 
 template <class Real>
 void take_samples(benchmark::State& state, const Kernels<Real>* kernels) {
-  const HalfRun<Real>& half = half_run(kernels, springs_until);
+  const HalfRun<Real>& half = half_run(kernels, springs);
   for (auto _ : state) benchmark::DoNotOptimize(half.sample());
   state.counters["s_per_triangle"] = per_triangle(half.triangles());
 }
 
 void find_edge(benchmark::State& state) {
-  const Plan plan = make_plan(body_of(plates(), mesh()), {});
+  const Plan plan = make_plan(body_of(plates("pbx5"), mesh()), {});
   for (auto _ : state) benchmark::DoNotOptimize(stable_step(plan));
 }
 
@@ -130,8 +138,9 @@ void register_in() {
     const auto add = [&](const std::string& name, auto function, auto... more) {
       benchmark::RegisterBenchmark((name + "/" + path).c_str(), function, kernels, more...)->Unit(benchmark::kMicrosecond);
     };
-    add("fdem_springs", make_steps<Real>, springs_until);
-    add("fdem_torn", make_steps<Real>, torn_after);
+    add("fdem_springs", make_steps<Real>, springs);
+    add("fdem_torn", make_steps<Real>, torn);
+    if (sizeof(Real) == 4) add("fdem_softened", make_steps<Real>, softened);
     add("fdem_sample", take_samples<Real>);
   }
 }
