@@ -76,12 +76,8 @@ void check_shape(const Shape& shape, const FarmBench::Outcome& outcome) {
 const Words change{"verb", "dry_run", "changed", "refused"};
 const Words adopted{"entries", "known", "adopted", "loose", "refused"};
 
-}  // namespace
-
-TEST_CASE("every verb of the help prints one JSON object whose schema names its version, with the fields that scripts rely on") {
-  SettledFarm farm;
-  const std::string copy = (farm.folder() / "copy.db").string(), out = (farm.folder() / "out").string();
-  const std::vector<Shape> shapes{
+std::vector<Shape> shapes_of_a_farm(const SettledFarm& farm, const std::string& copy, const std::string& out) {
+  return {
       {{"plan", farm.good.string()}, "fracfarm.plan/1", {"name", "jobs", "present", "done", "core_hours", "bytes", "classes"}},
       {{"submit", farm.good.string()}, "fracfarm.submit/1", {"campaign", "name", "total", "shared", "added"}},
       {{"run", farm.good.string()}, "fracfarm.run/1", {"exit_code", "elapsed_s", "status"}, 5},
@@ -117,8 +113,26 @@ TEST_CASE("every verb of the help prints one JSON object whose schema names its 
       {{"backup", copy}, "fracfarm.backup/1", {"file", "bytes"}},
       {{"restore", copy}, "fracfarm.restore/1", adopted},
   };
+}
+
+std::vector<Shape> shapes_without_a_farm(const std::string& scene, const std::string& mesh_scene, const std::string& record) {
+  return {
+      {{"pattern", "--id", "1"}, "fracfarm.pattern/1", {"cracks"}},
+      {{"scene", "--check", scene}, "fracfarm.scene-check/1", {}},
+      {{"solve", scene, "-o", record}, "fracfarm.summary/1", {"verdict", "time_to_failure", "peak_stress", "steps"}},
+      {{"check", record}, "fracfarm.check/1", {"passed", "records"}},
+      {{"show", record}, "fracfarm.show/1", {"verdict"}},
+      {{"mesh", mesh_scene}, "fracfarm.mesh/1", {}},
+  };
+}
+
+}  // namespace
+
+TEST_CASE("every verb of the help prints one JSON object whose schema names its version, with the fields that scripts rely on") {
+  SettledFarm farm;
+  const std::string copy = (farm.folder() / "copy.db").string(), out = (farm.folder() / "out").string();
   std::set<std::string> seen{"coordinator", "worker", "drill", "metrics"};  // daemons; tested beside this
-  for (const Shape& shape : shapes) {
+  for (const Shape& shape : shapes_of_a_farm(farm, copy, out)) {
     Words words = shape.words;
     words.push_back("--json");
     check_shape(shape, farm.verb(words));
@@ -133,15 +147,7 @@ TEST_CASE("every verb of the help prints one JSON object whose schema names its 
   const std::string mesh_scene = (farm.folder() / "mesh.json").string();
   std::ofstream(mesh_scene)
       << fracfarm_alone(farm, {"scene", "--method", "fdem", "--material", "shale", "--load", "uniaxial", "--id", "1"}).output;
-  const std::vector<Shape> alone{
-      {{"pattern", "--id", "1"}, "fracfarm.pattern/1", {"cracks"}},
-      {{"scene", "--check", scene}, "fracfarm.scene-check/1", {}},
-      {{"solve", scene, "-o", record}, "fracfarm.summary/1", {"verdict", "time_to_failure", "peak_stress", "steps"}},
-      {{"check", record}, "fracfarm.check/1", {"passed", "records"}},
-      {{"show", record}, "fracfarm.show/1", {"verdict"}},
-      {{"mesh", mesh_scene}, "fracfarm.mesh/1", {}},
-  };
-  for (const Shape& shape : alone) {
+  for (const Shape& shape : shapes_without_a_farm(scene, mesh_scene, record)) {
     Words words = shape.words;
     words.push_back("--json");
     check_shape(shape, fracfarm_alone(farm, words));

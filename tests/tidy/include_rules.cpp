@@ -48,7 +48,7 @@ struct Library {
 const std::vector<Library>& libraries() {
   static const std::vector<Library> table{
       {"hdf5", {"common/record/", "tests/record/"}, "go through common/record"},
-      {"zmq", {"common/wire/", "tests/wire/"}, "go through common/wire"},
+      {"zmq", {"common/wire/", "tests/wire/", "tests/operators/hostile_farm"}, "go through common/wire"},
       {"sqlite3.h", {"coordinator/ledger", "tests/coordinator/ledger", "tests/simulation/fault_"}, "go through coordinator/ledger*"},
       {"toml++", {"coordinator/campaign"}, "go through coordinator/campaign*"},
       {"Random123", {"common/base/"}, "use RandomStream"},
