@@ -49,6 +49,9 @@ std::vector<Event> Link::hear() {
 
 int Link::descriptor() const { return client_ ? client_->descriptor() : -1; }
 
-double Link::next_try() const { return unsent_ ? try_at_ : std::numeric_limits<double>::infinity(); }
+double Link::next_try() const {
+  if (client_ && client_->readable()) return 0.0;  // the descriptor has told of it already
+  return unsent_ ? try_at_ : std::numeric_limits<double>::infinity();
+}
 
 }  // namespace fracfarm::worker

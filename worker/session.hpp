@@ -170,6 +170,7 @@ class Session {
   int refusals_ = 0;  // of HELLO, in a row
   double beat_interval_s_ = 5.0;
   double beat_at_ = 0.0;
+  bool beat_last_ = false;  // the last request but HELLO was one
   double ask_at_ = 0.0;  // not before: the coordinator said WAIT
   double give_up_at_ = 1e300;
 

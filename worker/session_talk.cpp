@@ -55,9 +55,11 @@ std::optional<wire::Request> Session::next_request() {
     under_way_.bye = true;
     return wire::Bye{};
   }
-  if (now_ >= beat_at_) return make_beat();
   const int want = wanted();
-  if (should_report(want)) return make_next(want);
+  const bool report = should_report(want);
+  // Where answers take longer than beats are apart, there is always one due: what there is to say takes turns with them.
+  if (now_ >= beat_at_ && !(report && beat_last_)) return make_beat();
+  if (report) return make_next(want);
   return std::nullopt;
 }
 
@@ -74,11 +76,13 @@ double Session::remaining_s() const { return options_.end_at ? std::max(0.0, *op
 wire::Request Session::make_beat() {
   under_way_.held = held();
   beat_at_ = now_ + beat_interval_s_;
+  beat_last_ = true;
   return wire::Beat{under_way_.held};
 }
 
 wire::Request Session::make_next(int want) {
   wire::Next next{front(completed_), front(failed_), front(returned_), want, remaining_s()};
+  beat_last_ = false;
   under_way_.completed = next.completed.size();
   under_way_.failed = next.failed.size();
   under_way_.returned = next.returned.size();

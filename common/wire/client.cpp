@@ -98,23 +98,30 @@ struct Client::Impl {
     if (reconnect()) send_pending();  // where it cannot, the next silence tries again
   }
 
+  // Reads all that is there: a socket tells of a message only where it had none before.
   std::optional<Result<Reply>> take() {
+    std::optional<Result<Reply>> taken;
     zmq::message_t message;
     try {
       while (socket.recv(message, zmq::recv_flags::dontwait)) {
-        auto reply = decode_reply(message.to_string_view());
-        if (!reply) return Result<Reply>(tl::unexpected(reply.error()));
-        const auto* refusal = std::get_if<Refusal>(&reply->reply);
-        const bool mine = !pending.empty() && (reply->request_id == request_id || (refusal && reply->request_id == 0));
-        if (!mine) continue;  // late: of a request that was answered already
-        pending.clear();
-        silence_s = first_silence_s;
-        if (refusal) return Result<Reply>(fail(Fault::bad_request, "the coordinator refused: " + refusal->reason));
-        return Result<Reply>(std::move(reply->reply));
+        if (auto mine = reply_in(message.to_string_view()); mine && !taken) taken = std::move(mine);
       }
     } catch (const zmq::error_t&) {  // EINTR, or a socket that a reconnect will replace
     }
-    return std::nullopt;
+    return taken;
+  }
+
+  // Nothing where it is late: of a request that was answered already.
+  std::optional<Result<Reply>> reply_in(std::string_view bytes) {
+    auto reply = decode_reply(bytes);
+    if (!reply) return Result<Reply>(tl::unexpected(reply.error()));
+    const auto* refusal = std::get_if<Refusal>(&reply->reply);
+    const bool mine = !pending.empty() && (reply->request_id == request_id || (refusal && reply->request_id == 0));
+    if (!mine) return std::nullopt;
+    pending.clear();
+    silence_s = first_silence_s;
+    if (refusal) return Result<Reply>(fail(Fault::bad_request, "the coordinator refused: " + refusal->reason));
+    return Result<Reply>(std::move(reply->reply));
   }
 
   void wait(double seconds) {
@@ -182,6 +189,7 @@ Result<Reply> Client::ask(const Request& request, double timeout_s) {
   }
 }
 
+bool Client::readable() const { return (impl_->socket.get(zmq::sockopt::events) & ZMQ_POLLIN) != 0; }
 int Client::descriptor() const { return impl_->socket.get(zmq::sockopt::fd); }
 std::uint64_t Client::epoch() const { return impl_->current.epoch; }
 

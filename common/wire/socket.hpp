@@ -65,7 +65,8 @@ class Client {
   // In two halves, for a loop that must also watch its children: post never blocks; poll gives the reply to the last post, if it is there.
   Result<void> post(const Request& request);
   Result<std::optional<Reply>> poll(double timeout_s);
-  int descriptor() const;       // for poll(2); edge-triggered: call poll(0) before waiting on it. Changes at reconnect.
+  int descriptor() const;  // for poll(2); edge-triggered: wait on it only where nothing is readable. Changes at reconnect.
+  bool readable() const;
   std::uint64_t epoch() const;  // that DIR/endpoint.json stated at the last (re)connect, 0 where there was none
 
  private:

@@ -194,6 +194,26 @@ TEST_CASE("TERM ends in time even where no coordinator answers") {
   CHECK(bench.finished == exit_stopped);
 }
 
+TEST_CASE("answers that take longer than beats are apart keep no result from being reported") {
+  Bench bench({.slots = 1});
+  bench.take<wire::Hello>();
+  bench.reply(wire::Welcome{1, 0.2, 1.0, {}});
+  bench.take<wire::Next>();
+  bench.now += 0.25;
+  bench.give({assignment(1)});
+  bench.solve(0);
+  int reported = 0;
+  for (int n = 0; n < 8 && reported == 0; ++n) {
+    REQUIRE(bench.posted.size() == 1);
+    const bool next = std::holds_alternative<wire::Next>(bench.posted.front());
+    reported += next ? static_cast<int>(std::get<wire::Next>(bench.posted.front()).completed.size()) : 0;
+    bench.posted.clear();
+    bench.now += 0.25;
+    if (!next) bench.reply(wire::BeatReply{});
+  }
+  CHECK(reported == 1);
+}
+
 TEST_CASE("jobs that come while a worker leaves are given back before it says BYE") {
   Bench bench;
   bench.welcome_and_take_next();
