@@ -155,7 +155,7 @@ void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int jo
 template <class Real>
 bool is_unsettled(const State<Real>& state) {
   const Index settled = static_cast<Index>(state.settled);
-  return state.followed.size() > settled + settled / 16 + 64;
+  return state.followed.size() > settled + settled / 16 + 128;
 }
 
 template <class Real>
