@@ -3,73 +3,23 @@
 #include <signal.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <fstream>
 
 #include "common/base/random.hpp"
-#include "tests/system/farm_bench.hpp"
+#include "tests/system/mishap.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::bench;
 
 namespace {
 
-std::filesystem::path drills(FarmBench& farm, int jobs, double seconds = 0.0) {
-  const auto file = farm.folder() / "drills.toml";
-  std::ofstream(file) << "name = \"drills\"\nseed = 1\n[[jobs]]\nmethod = \"drill\"\npatterns = { orthogonal = \"1-" << jobs
-                      << "\" }\nset = { \"drill.act\" = \"sleep\", \"drill.seconds\" = " << seconds << " }\n";
-  return file;
-}
-
-void submit(FarmBench& farm, int jobs, double seconds = 0.0) {
-  REQUIRE(farm.verb({"submit", drills(farm, jobs, seconds).string()}).status == 0);
-}
-
-std::map<std::string, std::string> deadly(const FarmBench& farm, const std::string& program, int call) {
-  const auto token = farm.folder() / "token";
-  std::ofstream(token) << "once";
-  return {{"LD_PRELOAD", FRACFARM_KILL_SHIM},
-          {"FRACFARM_KILL_PROGRAM", program},
-          {"FRACFARM_KILL_AT", std::to_string(call)},
-          {"FRACFARM_KILL_TOKEN", token.string()}};
-}
-
 // A campaign of 20 jobs in which `program` dies at this call of its life; true where it came to it.
-bool campaign_with_a_death(const std::string& program, int call) {
-  FarmBench farm;
-  constexpr int jobs = 20;
-  submit(farm, jobs);
-  const auto environment = deadly(farm, program, call);
-  std::optional<Process> coordinator(farm.start({"coordinator", "--until-done", "--lease-timeout", "2"}, environment));
-  std::optional<Process> worker(farm.start({"worker", "--slots", "1", "--once"}, environment));
-  const auto keep = [](std::optional<Process>& it, const std::function<Process()>& again) {
-    if (it->running()) return false;
-    if (it->wait() == 0) return true;
-    it.reset();
-    it.emplace(again());
-    return false;
-  };
-  REQUIRE(wait_until(
-      [&] {
-        const bool served = keep(coordinator, [&] { return farm.coordinator({"--until-done", "--lease-timeout", "2"}); });
-        const bool worked = keep(worker, [&] { return farm.worker({"--slots", "1", "--once"}); });
-        return served && worked;
-      },
-      120.0));
-  farm.check_all_done(jobs);
-  return !std::filesystem::exists(farm.folder() / "token");
-}
+bool campaign_with_a_death(const std::string& program, int call) { return drills_with_a_mishap(20, {program, call}); }
 
 struct Victim {
   const char* program;
   int calls;  // of a whole campaign, about
 };
 constexpr Victim victims[]{{"fracfarm-coordinator", 2500}, {"fracfarm-worker", 1200}, {"fracfarm-solve", 500}};
-
-int from_environment(const char* name, int otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atoi(text) : otherwise;
-}
 
 }  // namespace
 
@@ -93,7 +43,7 @@ TEST_CASE("coordinator, worker and solver killed at calls all over a campaign lo
 TEST_CASE("a worker that stands still past its leases and goes on repeats nobody's result and breaks none") {
   FarmBench farm;
   constexpr int jobs = 12;
-  submit(farm, jobs, 0.4);
+  submit_drills(farm, jobs, 0.4);
   Process coordinator = farm.coordinator({"--until-done", "--lease-timeout", "1"});
   Process still = farm.worker({"--slots", "2"});
   REQUIRE(wait_until([&] { return farm.logged("\"started\""); }));
@@ -109,9 +59,26 @@ TEST_CASE("a worker that stands still past its leases and goes on repeats nobody
   farm.check_all_done(jobs);
 }
 
+// Nobody asks it anything meanwhile: a verb waits half a minute for an answer.
+TEST_CASE("a coordinator that stands still past the leases takes them from nobody when it goes on") {
+  FarmBench farm;
+  constexpr int jobs = 20;
+  submit_drills(farm, jobs, 0.4);
+  Process coordinator = farm.coordinator({"--until-done", "--lease-timeout", "1"});
+  Process worker = farm.worker({"--slots", "2", "--once"});
+  REQUIRE(wait_until([&] { return farm.logged("\"started\""); }));
+  coordinator.signal(SIGSTOP);
+  sleep_s(3.0);
+  coordinator.signal(SIGCONT);
+  CHECK(worker.wait() == 0);
+  CHECK(coordinator.wait() == 0);
+  farm.check_all_done(jobs);
+  for (const auto& [job, count] : farm.starts()) CHECK(count == 1);
+}
+
 TEST_CASE("a second coordinator on one ledger is refused in words, and the first goes on") {
   FarmBench farm;
-  submit(farm, 2);
+  submit_drills(farm, 2);
   Process first = farm.coordinator({"--until-done"});
   REQUIRE(wait_until([&] { return std::filesystem::exists(farm.farm() / "endpoint.json"); }));
   const auto second = farm.verb({"coordinator"});
@@ -126,7 +93,7 @@ TEST_CASE("a second coordinator on one ledger is refused in words, and the first
 TEST_CASE("an old copy of the ledger beside newer shards is put back without computing anything twice") {
   FarmBench farm;
   constexpr int jobs = 10;
-  submit(farm, jobs);
+  submit_drills(farm, jobs);
   const auto copy = farm.folder() / "copy.db";
   REQUIRE(farm.verb({"backup", copy.string()}).status == 0);
   {
