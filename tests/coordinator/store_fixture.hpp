@@ -46,15 +46,14 @@ struct Stored {
   wire::Completion completion;  // without a lease
 };
 
-// Appends records of positions first to last to new shards of `store`.
-inline std::vector<Stored> store_records(const Campaign& campaign, const std::filesystem::path& store, std::uint64_t first,
-                                         std::uint64_t last, const std::string& worker = "w", int a_shard = 8) {
+// Appends records to new shards of `store`.
+inline std::vector<Stored> store_all(const std::vector<Record>& records, const std::filesystem::path& store, const std::string& worker,
+                                     int a_shard) {
   SystemClock clock;
   std::filesystem::create_directories(store);
   worker::ShardWriter writer({.store = store, .worker = worker, .records = a_shard}, clock);
   std::vector<Stored> stored;
-  for (std::uint64_t position = first; position <= last; ++position) {
-    const Record record = stored_record(campaign, position);
+  for (const Record& record : records) {
     const std::string bytes = record_bytes(record).value();
     if (!writer.append(record.key + ".h5", bytes, sha256_hex(bytes))) break;
     const worker::Placed placed = writer.commit().at(0).value();
@@ -74,6 +73,14 @@ inline std::vector<Stored> store_records(const Campaign& campaign, const std::fi
     stored.push_back({{0, record.key, store / placed.shard, placed.offset, placed.length, placed.sha256}, std::move(completion)});
   }
   return stored;
+}
+
+// Those of positions first to last of a campaign.
+inline std::vector<Stored> store_records(const Campaign& campaign, const std::filesystem::path& store, std::uint64_t first,
+                                         std::uint64_t last, const std::string& worker = "w", int a_shard = 8) {
+  std::vector<Record> records;
+  for (std::uint64_t position = first; position <= last; ++position) records.push_back(stored_record(campaign, position));
+  return store_all(records, store, worker, a_shard);
 }
 
 }  // namespace fracfarm::test

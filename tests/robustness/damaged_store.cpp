@@ -10,10 +10,15 @@
 #include <set>
 
 #include "common/base/atomic_file.hpp"
+#include "common/base/build_info.hpp"
 #include "common/base/terminal.hpp"
 #include "common/record/check.hpp"
+#include "common/record/reader.hpp"
+#include "common/scene/parse.hpp"
 #include "coordinator/cli/adopt_records.hpp"
+#include "solver/program/drill.hpp"
 #include "tests/coordinator/store_fixture.hpp"
+#include "tests/record/sample_fdem.hpp"
 #include "tests/wire/temp_farm.hpp"
 
 using namespace fracfarm;
@@ -21,25 +26,49 @@ using namespace fracfarm;
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uint64_t records = 12;
+constexpr std::uint64_t grids = 12;  // records of the phase field; beside them a few of FDEM and of drills
 constexpr std::size_t block = 4096;
 
 enum class Harm { flip, zero, garbage, truncate, swap, stale, wrong_job, shifted };
 constexpr std::array<std::string_view, 8> harm_names{"flip", "zero", "garbage", "truncate", "swap", "stale", "wrong job", "shifted"};
 
+// Sound records of every method, as a solver would leave them on this attempt.
+std::vector<Record> sound_records(const Campaign& campaign, const fs::path& scratch, int attempt) {
+  std::vector<Record> list;
+  for (std::uint64_t n = 0; n < grids; ++n) list.push_back(test::stored_record(campaign, n, attempt));
+  for (const int cells : {10, 20}) {
+    Record record = sample::fdem_record({.cells_x = cells, .cells_z = 4 * cells / 5});
+    record.provenance["attempt"] = std::to_string(attempt);
+    list.push_back(std::move(record));
+  }
+  for (int n = 1; n <= 3; ++n) {
+    const Scene scene =
+        parse_scene(fmt::format(R"({{"schema": "fracfarm.scene/1", "method": "drill", "drill": {{"act": "sleep", "seconds": {}e-4}}}})", n))
+            .value();
+    Task task{job_key(canonical_text(scene), build_info().build_id), canonical_text(scene), scratch / "drill.h5", scratch / "drill.ckpt"};
+    task.attempt = attempt;
+    (void)run_drill(task, scene, Keeping::scratch, [](long long, double, double) {}).value();
+    list.push_back(read_record(task.output).value());
+  }
+  return list;
+}
+
 struct Store {
   TempFarm temp;
-  Campaign campaign = parse_campaign(test::store_campaign_text(records + 4), "stored").value();
-  std::vector<test::Stored> stored = test::store_records(campaign, temp.path / "store", 0, records - 1, "w", 100);
-  fs::path shard = stored.front().place.shard;
-  std::string bytes = read_file(shard, 1 << 30).value();
+  Campaign campaign = parse_campaign(test::store_campaign_text(grids + 4), "stored").value();
+  std::vector<test::Stored> stored;
+  fs::path shard;
+  std::string bytes;
   std::map<std::string, const test::Stored*> by_key;
   std::vector<std::string> stale, others;  // records of the same jobs of another attempt; of jobs that are not in the store
 
   Store() {
+    stored = test::store_all(sound_records(campaign, temp.path, 1), temp.path / "store", "w", 100);
+    shard = stored.front().place.shard;
+    bytes = read_file(shard, 1 << 30).value();
     for (const test::Stored& it : stored) by_key[it.place.key] = &it;
-    for (std::uint64_t n = 0; n < records; ++n) stale.push_back(record_bytes(test::stored_record(campaign, n, 2)).value());
-    for (std::uint64_t n = 0; n < 4; ++n) others.push_back(record_bytes(test::stored_record(campaign, records + n)).value());
+    for (const Record& record : sound_records(campaign, temp.path, 2)) stale.push_back(record_bytes(record).value());
+    for (std::uint64_t n = 0; n < 4; ++n) others.push_back(record_bytes(test::stored_record(campaign, grids + n)).value());
   }
 };
 
@@ -55,7 +84,8 @@ void lay(std::string& shard, const RecordPlace& place, std::string what) {
 
 std::string harmed(const Store& store, Harm harm, std::mt19937_64& engine) {
   std::string bytes = store.bytes;
-  const std::size_t at = engine() % bytes.size(), victim = engine() % records, other = (victim + 1 + engine() % (records - 1)) % records;
+  const std::size_t at = engine() % bytes.size(), victim = engine() % store.stored.size(),
+                    other = (victim + 1 + engine() % (store.stored.size() - 1)) % store.stored.size();
   const RecordPlace &a = store.stored[victim].place, &b = store.stored[other].place;
   switch (harm) {
     case Harm::flip:
