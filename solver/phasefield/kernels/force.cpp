@@ -24,21 +24,23 @@ INLINE Rows rows_of(const View& v) {
 INLINE void degrade(const View& v, int j, const Rows& rows, const Real* psi, const Real* before, RowSums& sums) {
   const Index at = row_at(v, j);
   const Real *now_row = psi + at, *before_row = before + at, *stored = v.stored + at, *stored_before = v.stored_before + at;
-  Real *released = rows.stress_xx, *elastic = rows.stress_zz;
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Real g = law::degradation(now_row[i], v.eta);
-    const Real drop = law::degradation(before_row[i], v.eta) - g;
-    const Real weighted = v.column_weight[i] * g;
-    rows.g[i] = g;
-    rows.weighted[i] = weighted;
-    elastic[i] = weighted * stored[i];
-    released[i] = v.column_weight[i] * drop * std::sqrt(larger(stored_before[i] * stored[i], Real(0)));
-  }
+  const Real *weight = v.column_weight, eta = v.eta;
+  Real *degradation = rows.g, *product = rows.weighted;
+  Partial released, elastic;
+  along_tiles(
+      v.padded, TILE_BODY {
+        const Real g = law::degradation(now_row[i], eta);
+        const Real drop = law::degradation(before_row[i], eta) - g;
+        const Real weighted = weight[i] * g;
+        degradation[i] = g;
+        product[i] = weighted;
+        elastic.at[l] += weighted * stored[i];
+        released.at[l] += weight[i] * drop * std::sqrt(larger(stored_before[i] * stored[i], Real(0)));
+      });
   rows.g[-1] = -rows.g[0];
   rows.g[v.columns] = -rows.g[v.columns - 1];
-  sums.released = v.corner_area * ordered_sum(released, v.padded);
-  sums.elastic = v.corner_area * ordered_sum(elastic, v.padded);
+  sums.released = v.corner_area * ordered_sum(released);
+  sums.elastic = v.corner_area * ordered_sum(elastic);
 }
 
 // Stiffness times the corner's area, for differences of displacements.
@@ -53,27 +55,30 @@ INLINE Differenced differenced(const View& v, const ElementRow& row) {
 }
 
 // Linear elastic rows: the four quadrants of a node share its g, so that the sums over them collapse to eight differences.
-INLINE void elastic_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
+INLINE StressSum elastic_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
   const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
   const Real ratio = Real(v.hz / v.hx), c11 = n.c11 + s.c11, c55 = ratio * ratio * (n.c55 + s.c55), two = Real(2);
   const Differenced n2{Real(0), two * n.c33, ratio * n.c55, two * n.c55}, s2{Real(0), two * s.c33, ratio * s.c55, two * s.c55};
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Real xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i], x = u.x[i + 1] - u.x[i - 1];
-    const Real zs = u.z[i] - u.z_south[i], zn = u.z_north[i] - u.z[i], z = u.z[i + 1] - u.z[i - 1];
-    const Real g = rows.g[i], weighted = rows.weighted[i];
-    const Real cross_x = n.c13 * zn + s.c13 * zs;
-    rows.east_x[i] = g * cross_x;
-    rows.east_z[i] = g * (n2.c13 * xn + s2.c13 * xs);
-    const Real north_z = weighted * (n2.c33 * zn + n.c13 * x), south_z = weighted * (s2.c33 * zs + s.c13 * x);
-    out.north_x[i] = weighted * (n2.c55 * xn + n2.c13 * z);
-    out.south_x[i] = weighted * (s2.c55 * xs + s2.c13 * z);
-    out.north_z[i] = north_z;
-    out.south_z[i] = south_z;
-    rows.stress_xx[i] = weighted * (c11 * x + two * cross_x);
-    rows.stress_zz[i] = north_z + south_z;
-  }
+  const Real *degradation = rows.g, *product = rows.weighted;
+  Real *east_x = rows.east_x, *east_z = rows.east_z;
+  Partial stress_xx, stress_zz;
+  along_tiles(
+      v.padded, TILE_BODY {
+        const Real xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i], x = u.x[i + 1] - u.x[i - 1];
+        const Real zs = u.z[i] - u.z_south[i], zn = u.z_north[i] - u.z[i], z = u.z[i + 1] - u.z[i - 1];
+        const Real g = degradation[i], weighted = product[i];
+        const Real cross_x = n.c13 * zn + s.c13 * zs;
+        east_x[i] = g * cross_x;
+        east_z[i] = g * (n2.c13 * xn + s2.c13 * xs);
+        const Real north_z = weighted * (n2.c33 * zn + n.c13 * x), south_z = weighted * (s2.c33 * zs + s.c13 * x);
+        out.north_x[i] = weighted * (n2.c55 * xn + n2.c13 * z);
+        out.south_x[i] = weighted * (s2.c55 * xs + s2.c13 * z);
+        out.north_z[i] = north_z;
+        out.south_z[i] = south_z;
+        stress_xx.at[l] += weighted * (c11 * x + two * cross_x);
+        stress_zz.at[l] += north_z + south_z;
+      });
   for (Real* row : {rows.east_x, rows.east_z}) row[-1] = -row[0], row[v.columns] = -row[v.columns - 1];
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
@@ -83,6 +88,7 @@ INLINE void elastic_force(const View& v, int j, const Rows& rows, const HalfEdge
     out.part_x[i] = x + (out.north_x[i] - out.south_x[i]);
     out.part_z[i] = z + (out.north_z[i] - out.south_z[i]);
   }
+  return {v.hx * ordered_sum(stress_xx), v.hz * ordered_sum(stress_zz)};
 }
 
 // Any law: from the stress of each quadrant, g degraded + kept.
@@ -113,7 +119,7 @@ class QuadrantForces {
   Real x_, z_;
 };
 
-INLINE void finish_quadrants(const View& v, const Rows& rows, const HalfEdges& out) {
+INLINE StressSum finish_quadrants(const View& v, const Rows& rows, const HalfEdges& out) {
   rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
   rows.west_x[v.columns] = -rows.east_x[v.columns - 1], rows.west_z[v.columns] = -rows.east_z[v.columns - 1];
 #pragma omp simd
@@ -121,6 +127,7 @@ INLINE void finish_quadrants(const View& v, const Rows& rows, const HalfEdges& o
     out.part_x[i] = (rows.east_x[i] + rows.west_x[i + 1]) - (rows.east_x[i - 1] + rows.west_x[i]) + (out.north_x[i] - out.south_x[i]);
     out.part_z[i] = (rows.east_z[i] + rows.west_z[i + 1]) - (rows.east_z[i - 1] + rows.west_z[i]) + (out.north_z[i] - out.south_z[i]);
   }
+  return {v.hx * ordered_sum(rows.stress_xx, v.padded), v.hz * ordered_sum(rows.stress_zz, v.padded)};
 }
 
 INLINE Stress secant_stress(SecantRow row, Real g, Real reduction, Strain e) {
@@ -128,7 +135,7 @@ INLINE Stress secant_stress(SecantRow row, Real g, Real reduction, Strain e) {
   return {g * (C.C11 * e.xx + C.C13 * e.zz), g * (C.C13 * e.xx + C.C33 * e.zz), g * (C.C55 * e.xz)};
 }
 
-INLINE void secant_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
+INLINE StressSum secant_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
   const SecantRow n = secant_row(v.element_rows[j + 1]), s = secant_row(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
@@ -143,7 +150,7 @@ INLINE void secant_force(const View& v, int j, const Rows& rows, const HalfEdges
         forces.add(i, secant_stress(s, g, r0[i], e.sw), secant_stress(s, g, r1[i], e.se), secant_stress(n, g, r2[i], e.nw),
                    secant_stress(n, g, r3[i], e.ne));
       });
-  finish_quadrants(v, rows, out);
+  return finish_quadrants(v, rows, out);
 }
 
 template <class Law>
@@ -153,7 +160,7 @@ INLINE Stress split_stress(const Law& law, Real g, const Strain& e) {
 }
 
 template <class Law>
-INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
+INLINE StressSum split_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
@@ -165,11 +172,11 @@ INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges&
         const Real g = degradation[i];
         forces.add(i, split_stress(s, g, e.sw), split_stress(s, g, e.se), split_stress(n, g, e.nw), split_stress(n, g, e.ne));
       });
-  finish_quadrants(v, rows, out);
+  return finish_quadrants(v, rows, out);
 }
 
 // The law is chosen once for a row.
-INLINE void force_row(const View& v, int j, const Rows& rows, const HalfEdges& out) {
+INLINE StressSum force_row(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   switch (v.law) {
     case RowLaw::seed:
     case RowLaw::none:
@@ -179,6 +186,7 @@ INLINE void force_row(const View& v, int j, const Rows& rows, const HalfEdges& o
     case RowLaw::star_convex:
       return split_force<law::StarConvexSplit<Real>>(v, j, rows, out);
   }
+  return {};
 }
 
 }  // namespace
@@ -187,8 +195,7 @@ RowSums force(const View& v, int j, const Real* psi, const Real* before) {
   RowSums sums{};
   const Rows rows = rows_of(v);
   degrade(v, j, rows, psi, before, sums);
-  force_row(v, j, rows, half_edges(v, j));
-  sums.stress = {v.hx * ordered_sum(rows.stress_xx, v.padded), v.hz * ordered_sum(rows.stress_zz, v.padded)};
+  sums.stress = force_row(v, j, rows, half_edges(v, j));
   return sums;
 }
 

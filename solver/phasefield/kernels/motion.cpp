@@ -21,7 +21,6 @@ double kick(const View& v, int j, Real dt) {
   const HalfEdges here = half_edges(v, j), above = half_edges(v, j + 1), below = half_edges(v, j - 1);
   const bool stores = v.keeps_forces || j == 0 || j == v.rows - 1;
   Real *fx = stores ? v.fx + at : scratch_row(v, first_free_row), *fz = stores ? v.fz + at : scratch_row(v, first_free_row + 1);
-  Real* energy = scratch_row(v, first_free_row + 2);
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
     fx[i] = here.part_x[i] + (above.south_x[i] - below.north_x[i]);
@@ -35,15 +34,17 @@ double kick(const View& v, int j, Real dt) {
     for (const int i : {0, v.columns - 1}) v.fx[at + i] = fx[i], v.fz[at + i] = fz[i];
   Real *vx = v.vx + at, *vz = v.vz + at;
   const Real *mx = v.inverse_mass_x[j], *mz = v.inverse_mass_z[j];
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Real x = vx[i] + dt * (fx[i] * mx[i]), z = vz[i] + dt * (fz[i] * mz[i]);
-    const Real mean_x = vx[i] + x, mean_z = vz[i] + z;
-    energy[i] = v.column_weight[i] * (mean_x * mean_x + mean_z * mean_z);
-    vx[i] = x;
-    vz[i] = z;
-  }
-  return 0.125 * double(v.node_rows[j].mass) * ordered_sum(energy, v.padded);
+  const Real* weight = v.column_weight;
+  Partial energy;
+  along_tiles(
+      v.padded, TILE_BODY {
+        const Real x = vx[i] + dt * (fx[i] * mx[i]), z = vz[i] + dt * (fz[i] * mz[i]);
+        const Real mean_x = vx[i] + x, mean_z = vz[i] + z;
+        energy.at[l] += weight[i] * (mean_x * mean_x + mean_z * mean_z);
+        vx[i] = x;
+        vz[i] = z;
+      });
+  return 0.125 * double(v.node_rows[j].mass) * ordered_sum(energy);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

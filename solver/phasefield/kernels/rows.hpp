@@ -45,6 +45,25 @@ INLINE void along_row(Index n, const Body& body) {
 }
 #define ROW_BODY [=](Index i) __attribute__((always_inline))
 
+// The same by tiles of `lanes` nodes, for bodies that sum: body(i, l) with l the node's number in its tile. Loops of just as many turns as
+// an instruction has numbers become straight code.
+#if defined(__AVX512F__)
+inline constexpr Index width = 64 / sizeof(Real);
+#elif defined(__AVX__)
+inline constexpr Index width = 32 / sizeof(Real);
+#else
+inline constexpr Index width = 16 / sizeof(Real);
+#endif
+template <class Body>
+INLINE void along_tiles(Index n, const Body& body) {
+  for (Index tile = 0; tile < n; tile += lanes)
+    for (Index part = 0; part < lanes; part += width) {
+#pragma omp simd
+      for (Index l = part; l < part + width; ++l) body(tile + l, l);
+    }
+}
+#define TILE_BODY [&](Index i, Index l) __attribute__((always_inline))
+
 struct Quadrants {
   Strain sw, se, nw, ne;
 };
@@ -57,16 +76,26 @@ INLINE Quadrants strains(const Around& u, Index i, Real per_hx, Real per_hz) {
   return {{xx_w, zz_s, xz_s + zx_w}, {xx_e, zz_s, xz_s + zx_e}, {xx_w, zz_n, xz_n + zx_w}, {xx_e, zz_n, xz_n + zx_e}};
 }
 
+// Partial sums over a row: number l of each tile goes to sum l.
+struct alignas(64) Partial {
+  Real at[lanes]{};
+};
+
 static_assert(lanes == 16);
-// Sum of n (a multiple of `lanes`) numbers: `lanes` partial sums, then pairs.
-INLINE double ordered_sum(const Real* __restrict x, Index n) {
-  Real part[lanes] = {};
-  for (Index i = 0; i < n; i += lanes)
-    for (int l = 0; l < lanes; ++l) part[l] += x[i + l];
+// The partial sums together: pairs.
+INLINE double ordered_sum(const Partial& part) {
   Real eight[8], four[4];
-  for (int l = 0; l < 8; ++l) eight[l] = part[l] + part[l + 8];
+  for (int l = 0; l < 8; ++l) eight[l] = part.at[l] + part.at[l + 8];
   for (int l = 0; l < 4; ++l) four[l] = eight[l] + eight[l + 4];
   return (four[0] + four[2]) + (four[1] + four[3]);
+}
+
+// Sum of n (a multiple of `lanes`) numbers.
+INLINE double ordered_sum(const Real* __restrict x, Index n) {
+  Partial part;
+  for (Index i = 0; i < n; i += lanes)
+    for (int l = 0; l < lanes; ++l) part.at[l] += x[i + l];
+  return ordered_sum(part);
 }
 
 INLINE Real* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
