@@ -35,8 +35,8 @@ void CoordinatorProcess::start() {
   world_.disk.revive();
   ++life_;
   if (world_.fault(0.5)) {
-    static constexpr Trouble troubles[]{Trouble::no_space,  Trouble::io_error,    Trouble::short_write,
-                                        Trouble::torn_page, Trouble::lost_writes, Trouble::killed};
+    static constexpr Trouble troubles[]{Trouble::no_space,    Trouble::io_error, Trouble::short_write, Trouble::torn_page,
+                                        Trouble::lost_writes, Trouble::killed,   Trouble::failed_sync};
     world_.disk.plan(static_cast<std::uint64_t>(world_.random.integer(0, 250)), troubles[world_.pick(std::size(troubles))]);
   }
   try {

@@ -23,7 +23,8 @@ int code_of_error(FaultDisk::Call call) {
 }  // namespace
 
 std::string name_of(Trouble trouble) {
-  static constexpr const char* names[]{"none", "ENOSPC", "EIO", "short write", "torn page", "lost unsynced writes", "SIGKILL"};
+  static constexpr const char* names[]{"none",    "ENOSPC",       "EIO", "short write", "torn page", "lost unsynced writes",
+                                       "SIGKILL", "EIO of a sync"};
   return names[static_cast<int>(trouble)];
 }
 
@@ -36,6 +37,8 @@ bool FaultDisk::may_have(Call call, Trouble trouble) {
     case Trouble::short_write:
     case Trouble::torn_page:
       return puts;
+    case Trouble::failed_sync:
+      return call == Call::sync;
     case Trouble::io_error:
     case Trouble::lost_writes:
     case Trouble::killed:

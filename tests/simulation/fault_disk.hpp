@@ -13,7 +13,7 @@
 
 namespace fracfarm::simulation {
 
-enum class Trouble { none, no_space, io_error, short_write, torn_page, lost_writes, killed };
+enum class Trouble { none, no_space, io_error, short_write, torn_page, lost_writes, killed, failed_sync };
 std::string name_of(Trouble trouble);
 
 class FaultDisk {

@@ -179,64 +179,64 @@ bool refused(const char* path, int flags) { return some_files && (flags & O_CREA
 
 }  // namespace
 
-#define REAL(name) static auto* const own = real(&::name, #name)
+#define REAL(name) static auto* const own = real(&::name, #name);
 
 extern "C" {
 
 ssize_t read(int fd, void* to, size_t n) {
-  REAL(read);
+  REAL(read)
   return due(Call::read, path_if_needed(fd)) ? fail() : own(fd, to, n);
 }
 ssize_t pread(int fd, void* to, size_t n, off_t at) {
-  REAL(pread);
+  REAL(pread)
   return due(Call::read, path_if_needed(fd)) ? fail() : own(fd, to, n, at);
 }
 ssize_t pread64(int fd, void* to, size_t n, off64_t at) {
-  REAL(pread64);
+  REAL(pread64)
   return due(Call::read, path_if_needed(fd)) ? fail() : own(fd, to, n, at);
 }
 ssize_t write(int fd, const void* from, size_t n) {
-  REAL(write);
+  REAL(write)
   return put(fd, n, [&](size_t length) { return own(fd, from, length); });
 }
 ssize_t pwrite(int fd, const void* from, size_t n, off_t at) {
-  REAL(pwrite);
+  REAL(pwrite)
   return put(fd, n, [&](size_t length) { return own(fd, from, length, at); });
 }
 ssize_t pwrite64(int fd, const void* from, size_t n, off64_t at) {
-  REAL(pwrite64);
+  REAL(pwrite64)
   return put(fd, n, [&](size_t length) { return own(fd, from, length, at); });
 }
 int fsync(int fd) {
-  REAL(fsync);
+  REAL(fsync)
   const int answer = change(fd, [&] { return own(fd); });
   if (answer == 0) note_sync(fd);
   return answer;
 }
 int fdatasync(int fd) {
-  REAL(fdatasync);
+  REAL(fdatasync)
   const int answer = change(fd, [&] { return own(fd); });
   if (answer == 0) note_sync(fd);
   return answer;
 }
 int ftruncate(int fd, off_t n) noexcept {
-  REAL(ftruncate);
+  REAL(ftruncate)
   note_write(fd);
   return change(fd, [&] { return own(fd, n); });
 }
 int ftruncate64(int fd, off64_t n) noexcept {
-  REAL(ftruncate64);
+  REAL(ftruncate64)
   note_write(fd);
   return change(fd, [&] { return own(fd, n); });
 }
 int rename(const char* from, const char* to) noexcept {
-  REAL(rename);
+  REAL(rename)
   if (due(Call::change, to)) return fail();
   note_rename(from, to);
   return own(from, to);
 }
 int open(const char* path, int flags, ...) {
-  REAL(open);
+  REAL(open)
   va_list more;
   va_start(more, flags);
   const mode_t mode = needs_mode(flags) ? va_arg(more, mode_t) : 0;
@@ -244,7 +244,7 @@ int open(const char* path, int flags, ...) {
   return refused(path, flags) ? fail() : own(path, flags, mode);
 }
 int open64(const char* path, int flags, ...) {
-  REAL(open64);
+  REAL(open64)
   va_list more;
   va_start(more, flags);
   const mode_t mode = needs_mode(flags) ? va_arg(more, mode_t) : 0;
@@ -252,12 +252,12 @@ int open64(const char* path, int flags, ...) {
   return refused(path, flags) ? fail() : own(path, flags, mode);
 }
 int close(int fd) {
-  REAL(close);
+  REAL(close)
   (void)due(Call::other, path_if_needed(fd));
   return own(fd);
 }
 int poll(struct pollfd* all, nfds_t n, int ms) {
-  REAL(poll);
+  REAL(poll)
   (void)due(Call::other, "");
   return own(all, n, ms);
 }
