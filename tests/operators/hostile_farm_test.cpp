@@ -258,12 +258,12 @@ struct TwoWorkers {
   FarmBench farm;
   std::optional<Process> coordinator, a, b;
 
-  TwoWorkers() {
+  explicit TwoWorkers(const char* lease_timeout) {
     const auto file = farm.folder() / "drills.toml";
     std::ofstream(file) << "name = \"drills\"\nseed = 1\n[[jobs]]\nmethod = \"drill\"\npatterns = { orthogonal = \"1-" << jobs
                         << "\" }\nset = { \"drill.seconds\" = 1.5 }\n";
     REQUIRE(farm.verb({"submit", file.string()}).status == 0);
-    coordinator.emplace(farm.coordinator({"--lease-timeout", "6"}));
+    coordinator.emplace(farm.coordinator({"--lease-timeout", lease_timeout}));
     a.emplace(farm.worker({"--slots", "2", "--node", "a"}));
     REQUIRE(wait_until([&] { return farm.logged("\"started\""); }));
   }
@@ -278,7 +278,7 @@ struct TwoWorkers {
 }  // namespace
 
 TEST_CASE("a worker whose key is taken away while it holds jobs has no say any more, its jobs go to others, and nothing is lost") {
-  TwoWorkers it;
+  TwoWorkers it("6");
   it.b.emplace(it.farm.worker({"--slots", "2", "--node", "b"}));
   fs::remove(it.key("allowed/worker-a-0.pub"));
   const int done_before = it.farm.done();
@@ -298,7 +298,7 @@ TEST_CASE("a worker whose key is taken away while it holds jobs has no say any m
 }
 
 TEST_CASE("a worker whose key is replaced while it holds jobs goes on with them under the new one") {
-  TwoWorkers it;
+  TwoWorkers it("120");  // the new pair is found sooner, however slow the machine
   const std::string before = wire::load_key(it.farm.farm(), "worker-a-0").value().public_key;
   fs::remove(it.key("worker-a-0.key"));
   fs::remove(it.key("allowed/worker-a-0.pub"));
