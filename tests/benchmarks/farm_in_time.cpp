@@ -115,7 +115,7 @@ void FarmInTime::begin(int number) {
   worker.life = ++lives_;
   worker::SessionOptions session;
   session.node = fmt::format("node-{}", number);
-  session.instance = fmt::format("life-{}", worker.life);
+  session.instance = fmt::format("life-{:09}", worker.life);
   session.build_id = build;
   session.slots = worker.kind.slots;
   session.memory_bytes = worker.kind.memory_bytes;

@@ -72,7 +72,7 @@ Figures limits(FarmPlan plan) {
   return {{name, "slot time lost to limits", percent(time.cut + time.unfit), "%", {}, most_lost},
           {name, "... in tries that were cut", percent(time.cut), "%"},
           {name, "... idle, as nothing fits what is left", percent(time.unfit), "%"},
-          {name, "slot time that works", percent(time.working), "%"},
+          {name, "slot time that works", percent(time.working), "%", least_working, {}},
           {name, "slot time given back early", percent(farm.given_back_s()), "%"},
           {name, "jobs done", static_cast<double>(farm.done()), "", 100.0, {}},
           {name, "tries cut", static_cast<double>(farm.cut()), ""},
