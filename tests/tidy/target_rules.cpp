@@ -36,7 +36,7 @@ std::pair<const SourceFile*, std::string> owner_of(const Tree& tree, const Sourc
 }
 
 bool builds(const SourceFile& cmake, const std::string& name, bool test) {
-  if (words_of(cmake, "fracfarm_room|add_library|add_executable|target_sources").contains(name)) return true;
+  if (words_of(cmake, "fracfarm_room|fracfarm_kernels|add_library|add_executable|target_sources").contains(name)) return true;
   return test && words_of(cmake, "fracfarm_tests").contains(name);
 }
 
