@@ -76,11 +76,11 @@ std::optional<double> time_left(const Desk& desk, const std::vector<CountRow>& r
   }
   if (left == 0) return 0.0;
   if (live.rate_per_s > 0.0) return static_cast<double>(left) / live.rate_per_s;
-  int slots = 0;
+  std::int64_t slots = 0;  // of any size: each worker names its own
   for (const LiveWorker& worker : live.workers)
     if (worker.state == "working") slots += worker.slots;
   if (!all_known || slots == 0) return std::nullopt;
-  return work_s / slots;
+  return work_s / static_cast<double>(slots);
 }
 
 nlohmann::json workers_json(const Live& live) {
