@@ -51,7 +51,7 @@ TEST_CASE("a checkpoint that the disk does not take, or loses, costs the work th
     for (int call = 1; call < (every() > 0 ? 6 : 2); ++call) {
       INFO(trouble << " at call " << call);
       FarmBench farm;
-      farm.submit({.patterns = 1, .set = R"("phase_field.cells" = [255, 255])"});
+      farm.submit({.patterns = 1, .set = R"("phase_field.cells" = [383, 383])"});  // long enough to be stopped
       Process coordinator = farm.coordinator({"--until-done", "--lease-timeout", "2"});
       Process first = farm.worker({"--slots", "1"}, environment_of(farm, {"fracfarm-solve", call, trouble, "/checkpoints"}));
       REQUIRE(wait_until([&] { return farm.logged("\"progress\""); }));
