@@ -19,7 +19,7 @@ struct Victim {
   const char* program;
   int calls;  // of a whole campaign, about
 };
-constexpr Victim victims[]{{"fracfarm-coordinator", 2500}, {"fracfarm-worker", 1200}, {"fracfarm-solve", 500}};
+constexpr Victim victims[]{{"fracfarm-coordinator", 600}, {"fracfarm-worker", 700}, {"fracfarm-solve", 130}};
 
 }  // namespace
 
