@@ -69,10 +69,11 @@ bool memory_is_limited() {
   return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-// Throws std::bad_alloc at the limit.
-[[noreturn]] void leak() {
+// Throws std::bad_alloc at the limit, and is no hang on a slow machine before it.
+[[noreturn]] void leak(const Progress& progress) {
   std::vector<std::unique_ptr<char[]>> kept;
-  for (;;) {
+  for (long long turn = 1;; ++turn) {
+    progress(turn, 0.0, 0.0);
     kept.push_back(std::make_unique<char[]>(bite));
     std::memset(kept.back().get(), 1, bite);
   }
@@ -147,7 +148,7 @@ Result<TaskEnd> run_drill(const Task& task, const Scene& scene, Keeping keeping,
     case DrillAct::leak:
       if (!memory_is_limited())
         return fail(Fault::bad_request, "a drill leaks only under a memory limit: start the worker with --memory-limit");
-      leak();
+      leak(progress);
     case DrillAct::sleep:
     case DrillAct::truncated:
     case DrillAct::bit_flipped:
