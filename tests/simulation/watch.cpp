@@ -96,7 +96,7 @@ void Watch::look_at_receipts(const wire::Next& next, const wire::Jobs& jobs, Dat
   }
 }
 
-void Watch::sent(const std::string& peer, const wire::RequestEnvelope& asked, const wire::Reply& reply) {
+void Watch::sent(const std::string&, const wire::RequestEnvelope& asked, const wire::Reply& reply) {
   const auto* next = std::get_if<wire::Next>(&asked.request);
   const auto* jobs = std::get_if<wire::Jobs>(&reply);
   if (!next || !jobs) return;
