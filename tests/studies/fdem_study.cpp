@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "common/failure/failure.hpp"
 #include "common/scene/pattern.hpp"
 
 namespace fracfarm::studies {
@@ -102,6 +104,46 @@ double stiffness_of(const FdemRun& run, const Scene& scene) {
 }
 
 double share_apart(double a, double b) { return a == b ? 0.0 : std::abs(a - b) / std::abs(b); }
+
+namespace {
+
+// Of the time at which the mean stress falls below a share of its peak; 1 where one of the two never does.
+double drop_apart(const FdemRun& run, const FdemRun& judge, double fraction) {
+  const auto drop = [fraction](const FdemRun& r) { return stress_drop(r.series["step_time"], r.series["stress_zz"], fraction); };
+  const auto ours = drop(run), theirs = drop(judge);
+  return ours && theirs ? share_apart(*ours, *theirs) : 1.0;
+}
+
+// Each row at which the stress is lower than ever since its peak is the drop for all thresholds between it and the lowest before.
+double threshold_apart(const FdemRun& run, const FdemRun& judge, double near) {
+  const std::span<const double> time = judge.series["step_time"], stress = judge.series["stress_zz"];
+  const auto peak = std::max_element(stress.begin(), stress.end());
+  double nearest = 1.0, low = 1.0;
+  for (std::size_t row = static_cast<std::size_t>(peak - stress.begin()); row < stress.size(); ++row) {
+    const double share = stress[row] / *peak;
+    if (share >= low) continue;
+    if (share_apart(*run.drop10, time[row]) <= near)
+      nearest = std::min(nearest, std::max({0.0, share - stress_drop_fraction, stress_drop_fraction - low}));
+    low = share;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+RunDifference difference(const FdemRun& run, const FdemRun& judge, double near) {
+  RunDifference a;
+  a.trouble = run.trouble + judge.trouble;
+  if (a.trouble.empty() && (!run.drop10 || !judge.drop10)) a.trouble = "no stress drop";
+  if (!a.trouble.empty()) return a;
+  a.peak = share_apart(run.peak, judge.peak), a.drop10 = share_apart(*run.drop10, *judge.drop10);
+  a.drop11 = drop_apart(run, judge, 0.11), a.drop9 = drop_apart(run, judge, 0.09), a.threshold = threshold_apart(run, judge, near);
+  const double common = std::min(run.last_time, judge.last_time);
+  const Broken ours = broken_by(run, common), theirs = broken_by(judge, common);
+  a.edges = share_apart(static_cast<double>(ours.edges), static_cast<double>(theirs.edges));
+  a.length = share_apart(ours.length, theirs.length);
+  return a;
+}
 
 std::string mean_most(const Spread& s, int digits) {
   return s.count ? fmt::format("{:.{}f} / {:.{}f}", 100.0 * s.mean, digits, 100.0 * s.most, digits) : "-";

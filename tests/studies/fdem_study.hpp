@@ -58,6 +58,16 @@ double stiffness_of(const FdemRun& run, const Scene& scene);
 // |a - b| / b; 0 where both are 0.
 double share_apart(double a, double b);
 
+// What parts a run from the one that judges it, all relative; nothing but `trouble` where one of the two has no stress drop. Broken edges
+// are counted up to the earlier of both ends. A stress that swings about 10 % of its peak makes drop10 jump by a whole swing; so beside it
+// stand the same instants at 11 and 9 %, and the distance from 10 % (of the peak) to the nearest threshold at which the judge's drop comes
+// within `near` of the run's drop10.
+struct RunDifference {
+  std::string trouble;
+  double peak = 0.0, drop10 = 0.0, drop11 = 0.0, drop9 = 0.0, threshold = 0.0, edges = 0.0, length = 0.0;
+};
+RunDifference difference(const FdemRun& run, const FdemRun& judge, double near);
+
 std::string mean_most(const Spread& s, int digits = 2);  // "0.31 / 0.84", in %; "-" of nothing
 
 }  // namespace fracfarm::studies

@@ -46,6 +46,52 @@ CLI::App* add_fdem_study(CLI::App& app, std::string name, std::string words, Que
   return command;
 }
 
+struct FdemQuestions {
+  FdemTiersQuestion tiers;
+  FdemFloorQuestion floor;
+  FdemRulesQuestion rules;
+  FdemPickQuestion pick;
+  FdemMeshQuestion mesh;
+  FdemGmshQuestion gmsh;
+  FdemStabilityQuestion stability;
+  FdemMethodsQuestion methods;
+};
+
+void add_fdem_studies(CLI::App& app, FdemQuestions& q, int& status) {
+  add_fdem_study(app, "fdem-tiers", "The cheaper tiers of FDEM against the reference tier; 1 where a pattern misses", q.tiers, fdem_tiers,
+                 status);
+  add_fdem_study(app, "fdem-floor", "How far FDEM's reference tier is from itself, pattern by pattern", q.floor, fdem_floor, status)
+      ->add_option("--only", q.floor.only, "These patterns, in place of the first few")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1'000'000));
+  add_fdem_study(app, "fdem-rules", "What each rule of FDEM costs and saves", q.rules, fdem_rules, status);
+  CLI::App* pick_command = add_fdem_study(
+      app, "fdem-pick", "What the five-step pick costs, and whether it settles on what the horizon gives", q.pick, fdem_pick, status);
+  pick_command->add_option("--reach", q.pick.reach, "The last word is a run to so many times the stress drop")
+      ->check(CLI::Range(2.0, 1000.0))
+      ->capture_default_str();
+  q.mesh.choice.patterns = 3;
+  add_fdem_study(app, "fdem-mesh", "Mesh size and mesh seeds; 1 where the body's answer moves by more than 10 %", q.mesh, fdem_mesh, status)
+      ->add_option("--meshes", q.mesh.meshes, "Seeds of each size")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  q.gmsh.choice.materials = {"shale", "tungsten"}, q.gmsh.choice.patterns = 8;
+  add_fdem_study(app, "fdem-gmsh", "The body's answer on our meshes and on gmsh's; 1 where a mean moves by more than 2 %", q.gmsh,
+                 fdem_gmsh, status)
+      ->add_option("--folder", q.gmsh.folder, "For gmsh's files");
+  q.stability.choice.patterns = 1;
+  add_fdem_study(app, "fdem-stability", "The edge of FDEM's step, predicted and observed, and runs past it", q.stability, fdem_stability,
+                 status)
+      ->add_option("--picture", q.stability.picture, "A PNG file of the map");
+  q.methods.choice.materials = {"shale", "tungsten", "pbx5"};
+  CLI::App* methods_command =
+      add_fdem_study(app, "fdem-methods", "Where FDEM and the phase field part ways on the same patterns", q.methods, fdem_methods, status);
+  methods_command->add_option("--picture", q.methods.picture, "A PNG file of one pattern");
+  methods_command->add_option("--picture-pattern", q.methods.picture_pattern, "Which")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+}
+
 }  // namespace
 }  // namespace fracfarm::studies
 
@@ -66,41 +112,8 @@ int main(int argc, char** argv) {
   rules_command->add_option("--rules", rule.rules, "Some rules only")->delimiter(',')->check(CLI::IsMember(rule_names()));
   rules_command->add_flag("--json", rule.json, "Print one object");
   int status = fracfarm::exit_ok;
-  FdemTiersQuestion tiers;
-  add_fdem_study(app, "fdem-tiers", "The cheaper tiers of FDEM against the reference tier; 1 where a pattern misses", tiers, fdem_tiers,
-                 status);
-  FdemRulesQuestion fdem_rule;
-  add_fdem_study(app, "fdem-rules", "What each rule of FDEM costs and saves", fdem_rule, fdem_rules, status);
-  FdemPickQuestion pick;
-  CLI::App* pick_command = add_fdem_study(
-      app, "fdem-pick", "What the five-step pick costs, and whether it settles on what the horizon gives", pick, fdem_pick, status);
-  pick_command->add_option("--reach", pick.reach, "The last word is a run to so many times the stress drop")
-      ->check(CLI::Range(2.0, 1000.0))
-      ->capture_default_str();
-  FdemMeshQuestion mesh;
-  mesh.choice.patterns = 3;
-  add_fdem_study(app, "fdem-mesh", "Mesh size and mesh seeds; 1 where the body's answer moves by more than 10 %", mesh, fdem_mesh, status)
-      ->add_option("--meshes", mesh.meshes, "Seeds of each size")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  FdemGmshQuestion gmsh;
-  gmsh.choice.materials = {"shale", "tungsten"}, gmsh.choice.patterns = 8;
-  add_fdem_study(app, "fdem-gmsh", "The body's answer on our meshes and on gmsh's; 1 where a mean moves by more than 2 %", gmsh, fdem_gmsh,
-                 status)
-      ->add_option("--folder", gmsh.folder, "For gmsh's files");
-  FdemStabilityQuestion stability;
-  stability.choice.patterns = 1;
-  add_fdem_study(app, "fdem-stability", "The edge of FDEM's step, predicted and observed, and runs past it", stability, fdem_stability,
-                 status)
-      ->add_option("--picture", stability.picture, "A PNG file of the map");
-  FdemMethodsQuestion methods;
-  methods.choice.materials = {"shale", "tungsten", "pbx5"};
-  CLI::App* methods_command =
-      add_fdem_study(app, "fdem-methods", "Where FDEM and the phase field part ways on the same patterns", methods, fdem_methods, status);
-  methods_command->add_option("--picture", methods.picture, "A PNG file of one pattern");
-  methods_command->add_option("--picture-pattern", methods.picture_pattern, "Which")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
+  FdemQuestions fdem;
+  add_fdem_studies(app, fdem, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

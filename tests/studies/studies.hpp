@@ -36,6 +36,15 @@ struct FdemTiersQuestion {
 // 0 where every pattern's fast run is within all three limits.
 int fdem_tiers(const FdemTiersQuestion& question);
 
+// How far FDEM's reference tier is from itself: what a comparison with it cannot go below.
+struct FdemFloorQuestion {
+  FdemChoice choice;
+  std::vector<int> only;  // patterns; empty: 1 ... as the choice says
+  double near = 0.03;     // of drop10: what counts as the same instant
+  bool json = false;
+};
+int fdem_floor(const FdemFloorQuestion& question);
+
 // What each rule of FDEM costs in accuracy and saves in time.
 struct FdemRulesQuestion {
   FdemChoice choice;
