@@ -27,11 +27,12 @@ constexpr FdemRule table[]{
     {"float", "numbers of 32 bits against 64", [](Scene& scene, RunControl&) { scene.fdem.precision = Precision::double_; }},
 };
 
+constexpr double near = 0.001;  // of drop10: what counts as the same instant
+
 struct Pair {
   Case which;
-  std::string trouble;
+  RunDifference off;
   bool same_bits = false;
-  double peak = 0.0, drop = 0.0, edges = 0.0;  // relative
   double with_cpu_s = 0.0, without_cpu_s = 0.0;
 };
 
@@ -52,15 +53,8 @@ Pair compare(const FdemRule& rule, const Case& which, std::uint64_t seed) {
   RunControl control;
   rule.leave_out(scene, control);
   const FdemRun without = run_fdem(scene, control);
-  Pair pair;
-  pair.which = which, pair.trouble = with.trouble + without.trouble;
-  if (pair.trouble.empty() && (!with.drop10 || !without.drop10)) pair.trouble = "no stress drop";
-  if (!pair.trouble.empty()) return pair;
-  pair.same_bits = same_run(with, without);
-  pair.peak = share_apart(with.peak, without.peak), pair.drop = share_apart(*with.drop10, *without.drop10);
-  const double common = std::min(with.last_time, without.last_time);
-  pair.edges = share_apart(static_cast<double>(broken_by(with, common).edges), static_cast<double>(broken_by(without, common).edges));
-  pair.with_cpu_s = with.cpu_s, pair.without_cpu_s = without.cpu_s;
+  Pair pair{which, difference(with, without, near), false, with.cpu_s, without.cpu_s};
+  if (pair.off.trouble.empty()) pair.same_bits = same_run(with, without);
   return pair;
 }
 
@@ -68,33 +62,36 @@ struct Line {
   const FdemRule* rule;
   std::string material;
   std::size_t runs = 0, same_bits = 0, troubles = 0;
-  Spread peak, drop, edges;
+  Spread peak, drop, threshold, edges;
   double factor = 0.0;
 };
 
 Line line_of(const FdemRule& rule, const std::string& material, const std::vector<Pair>& pairs) {
-  Line line{&rule, material, 0, 0, 0, {}, {}, {}};
-  std::vector<double> peak, drop, edges;
+  Line line{&rule, material, 0, 0, 0, {}, {}, {}, {}};
+  std::vector<double> peak, drop, threshold, edges;
   double with = 0.0, without = 0.0;
   for (const Pair& p : pairs) {
     if (p.which.material != material) continue;
-    ++line.runs, line.troubles += !p.trouble.empty(), line.same_bits += p.same_bits;
-    if (!p.trouble.empty()) continue;
-    peak.push_back(p.peak), drop.push_back(p.drop), edges.push_back(p.edges);
+    ++line.runs, line.troubles += !p.off.trouble.empty(), line.same_bits += p.same_bits;
+    if (!p.off.trouble.empty()) continue;
+    peak.push_back(p.off.peak), drop.push_back(p.off.drop10), threshold.push_back(p.off.threshold), edges.push_back(p.off.edges);
     with += p.with_cpu_s, without += p.without_cpu_s;
   }
   line.peak = spread_of(peak), line.drop = spread_of(drop), line.edges = spread_of(edges);
+  line.threshold = spread_of(threshold);
   line.factor = with > 0.0 ? without / with : 0.0;
   return line;
 }
 
 void print_text(const std::vector<Line>& lines) {
   std::vector<std::vector<std::string>> rows{
-      {"rule", "material", "same bits", "peak %", "drop10 %", "broken edges %", "trouble", "faster"}};
+      {"rule", "material", "same bits", "peak %", "drop10 %", "threshold", "broken edges %", "trouble", "faster"}};
   for (const Line& l : lines)
     rows.push_back({std::string(l.rule->name), l.material, fmt::format("{} of {}", l.same_bits, l.runs), mean_most(l.peak, 4),
-                    mean_most(l.drop, 3), mean_most(l.edges), std::to_string(l.troubles), fmt::format("{:.2f}", l.factor)});
-  fmt::print("with each rule against without it; mean / largest\n{}\n", table_text(rows));
+                    mean_most(l.drop, 3), mean_most(l.threshold, 3), mean_most(l.edges), std::to_string(l.troubles),
+                    fmt::format("{:.2f}", l.factor)});
+  fmt::print("with each rule against without it; mean / largest; threshold: how far from 10 % of the peak both drops are within {} %\n{}\n",
+             100.0 * near, table_text(rows));
   for (const FdemRule& rule : table) fmt::print("{}: {}\n", rule.name, rule.meaning);
 }
 
@@ -110,6 +107,7 @@ void print_json(const std::vector<Line>& lines) {
                     {"peak_largest", l.peak.most},
                     {"drop10_mean", l.drop.mean},
                     {"drop10_largest", l.drop.most},
+                    {"threshold_largest", l.threshold.most},
                     {"broken_edges_mean", l.edges.mean},
                     {"broken_edges_largest", l.edges.most},
                     {"troubles", l.troubles},
