@@ -1,7 +1,10 @@
 // fracfarm-solve: one scene by hand, or the kept-alive child of a worker. Knows no network and no ledger.
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 
 #include "common/base/build_info.hpp"
 #include "common/base/exit_code.hpp"
@@ -9,6 +12,18 @@
 #include "solver/program/one_shot.hpp"
 #include "solver/program/serve.hpp"
 #include "solver/program/signals.hpp"
+
+namespace {
+
+// OpenMP's threads spin while they wait for each other, which makes a run up to ten times slower where other work wants the cores. Its
+// library reads its settings as the program is loaded, so the program is loaded again.
+void let_threads_sleep(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  setenv("OMP_WAIT_POLICY", "passive", 1);
+  execv("/proc/self/exe", argv);  // comes back where it cannot: they spin
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace fracfarm;
@@ -34,6 +49,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& mistake) {
     return app.exit(mistake) == 0 ? exit_ok : exit_bad_input;
   }
+  if (options.threads > 1) let_threads_sleep(argv);
   catch_stop_signals();
   if (serving) return serve();
   const std::optional<double> seconds = parse_duration(budget);
