@@ -21,6 +21,9 @@ constexpr double checkpoint_interval_s = 300.0;  // a killed run loses at most t
 
 enum class End { none, failure, horizon, wall_clock, step_budget, stopped };
 
+// Of this run: a study has others on other threads, a run with threads of its own is all that its process does.
+double cpu_now_s(const RunControl& control) { return control.threads > 1 ? process_cpu_s() : thread_cpu_s(); }
+
 // When a run began, before its mesh was made.
 struct Begin {
   double wall_s, cpu_s;
@@ -99,7 +102,7 @@ class Run {
     result.series = series;
     result.steps = n_, result.dt = dt_;
     result.energy_residual = log_.worst_residual();
-    result.cpu_s = cpu_before_s_ + thread_cpu_s() - begin_.cpu_s;
+    result.cpu_s = cpu_before_s_ + cpu_now_s(control_) - begin_.cpu_s;
     result.wall_s = wall_before_s_ + elapsed_s();
     result.stages = simulation_->stage_seconds();
     result.stages.insert(making_.begin(), making_.end());
@@ -114,7 +117,7 @@ class Run {
     if (control_.checkpoint.empty()) return {};
     ArchiveWriter archive;
     archive.put(n_);
-    archive.put(cpu_before_s_ + thread_cpu_s() - begin_.cpu_s);
+    archive.put(cpu_before_s_ + cpu_now_s(control_) - begin_.cpu_s);
     archive.put(wall_before_s_ + elapsed_s());
     archive.put_array(damage_initial_);
     simulation_->save(archive);
@@ -192,7 +195,7 @@ RunResult rejected_run(const std::string& reason) {
 }
 
 Result<RunResult> run_once(const Scene& scene, const RunControl& control) {
-  const Begin begin{SystemClock().monotonic_s(), thread_cpu_s()};
+  const Begin begin{SystemClock().monotonic_s(), cpu_now_s(control)};
   Result<MadeSimulation> made = make_simulation(scene, control);
   if (!made) return tl::unexpected(made.error());
   if (!made->simulation) return rejected_run(made->rejected);
@@ -217,12 +220,12 @@ std::optional<std::string_view> try_otherwise(int trials, Scene& scene, RunContr
 
 Result<RunResult> solve(const Scene& scene, const RunControl& control) {
   SystemClock clock;
-  const double start_s = clock.monotonic_s(), start_cpu_s = thread_cpu_s();
+  const double start_s = clock.monotonic_s(), start_cpu_s = cpu_now_s(control);
   Scene trial_scene = scene;
   RunControl trial = control;
   std::vector<std::string> notes;
   for (;;) {
-    const double before_s = clock.monotonic_s() - start_s, before_cpu_s = thread_cpu_s() - start_cpu_s;
+    const double before_s = clock.monotonic_s() - start_s, before_cpu_s = cpu_now_s(control) - start_cpu_s;
     trial.wall_budget_s = control.wall_budget_s - before_s;
     Result<RunResult> result = run_once(trial_scene, trial);
     if (result) {
