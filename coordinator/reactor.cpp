@@ -176,6 +176,7 @@ wire::Reply Reactor::on_next(const std::string& peer, Session& session, const wi
   if (std::optional<wire::Reply> refusal = wrong_build(session.build_id); refusal && brings_nothing) return *refusal;
   wire::Jobs reply;
   for (const wire::Completion& completion : next.completed) reply.receipts.push_back(on_completion(peer, session, completion, now));
+  session.fault_counted = false;
   for (const wire::Failed& failed : next.failed) reply.receipts.push_back(on_failed(peer, session, failed, now));
   for (const wire::LeaseId& lease : next.returned) on_returned(peer, lease, now);
   hand_out(session, next.free_slots, reply, now);

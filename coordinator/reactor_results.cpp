@@ -180,6 +180,7 @@ void Reactor::count_fast(Session& session, const wire::LeaseId& lease, Fault fau
   const auto held = held_.find({lease.epoch, lease.counter});
   if (!fault_row(fault).node_suspected || held == held_.end()) return;
   const bool fast = now.monotonic_s - held->second.began_s < fast_fault_s;
+  if (std::exchange(session.fault_counted, true)) return;
   session.fast_faults = fast ? session.fast_faults + 1 : 0;
   if (session.fast_faults == most_fast_faults)
     notice({"stopped",

@@ -38,9 +38,10 @@ struct Session {
   std::string node;
   std::string build_id;
   int slots = 0;
-  double remaining_s = -1.0;  // as it last said
-  double seen_s = 0.0;        // monotonic
-  int fast_faults = 0;
+  double remaining_s = -1.0;   // as it last said
+  double seen_s = 0.0;         // monotonic
+  int fast_faults = 0;         // in a row
+  bool fault_counted = false;  // one of the message under way: what fails together has one cause, and counts once
   std::uint64_t memory_bytes = 0;
   bool draining = false;
   double idle_since_s = -1.0;  // asked and got nothing since then; < 0: it has work

@@ -291,6 +291,20 @@ TEST_CASE("Five fast faults in a row stop a worker's claims; a result between th
   CHECK(farm.claim("worker-a", 1).assignments.size() == 1);
 }
 
+TEST_CASE("Tries that fail together, as when a batch finds the disk full, are one fault in a row") {
+  Farm farm(40);
+  farm.hello("worker-a", "n1", "i1", {}, 8);
+  for (int n = 0; n < 4; ++n) {
+    wire::Next next{{}, {}, {}, 0, -1.0};
+    for (const wire::Assignment& it : farm.claim("worker-a", 8).assignments)
+      next.failed.push_back({it.lease, it.key, Fault::node_lost, "no space left", "s"});
+    REQUIRE(next.failed.size() > 1);
+    farm.next("worker-a", next);
+  }
+  farm.fail_with("worker-a", farm.one("worker-a"), Fault::node_lost);
+  CHECK(farm.claim("worker-a", 1).assignments.empty());
+}
+
 TEST_CASE("A worker of another solver build is refused in words") {
   Farm farm(1);
   const auto reply = farm.tell("worker-a", wire::Hello{"n1", "i1", 1, 1, "build-b", -1.0, {}});
