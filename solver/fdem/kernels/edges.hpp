@@ -26,17 +26,12 @@ INLINE Joint law_of(const View& view, const Places& joints, int b) {
   return {law.penalty, law.per_onset_n, law.per_onset_t, law.per_rupture_n, law.per_rupture_t};
 }
 
-// Displacements of both sides.
-struct Sides {
-  Ends left, right;
-};
-
-INLINE Sides load_sides(const View& view, const Places& joints, int b, int s) {
-  const Index joint = Index(b) * lanes + s * width;
-  const int *left = joints.left_row + joint, *right = joints.right_row + joint;
-  const Real* rows = view.rows;
-  const Lanes4 u = load_rows(LANE_AT { return rows + left[l]; }), v = load_rows(LANE_AT { return rows + right[l]; });
-  return {{u.a, u.b, u.c, u.d}, {v.a, v.b, v.c, v.d}};
+// Displacements of one side, whose rows lie at `rows`. (Both sides in one structure are copied to memory and back by GCC 12.)
+INLINE Ends load_side(const View& view, const int* rows, int b, int s) {
+  const int* row = rows + Index(b) * lanes + s * width;
+  const Real* u = view.rows;
+  const Lanes4 x = load_rows(LANE_AT { return u + row[l]; });
+  return {x.a, x.b, x.c, x.d};
 }
 
 // Forces of the left side at both ends, into the slots of both sides.
@@ -48,9 +43,9 @@ INLINE void store_sides(const View& view, const Places& joints, int b, int s, co
   store_rows(LANE_AT { return slots + right[l]; }, {-f.bx, -f.bz, -f.ax, -f.az});
 }
 
-INLINE Line midline(const Places& joints, int b, int s, const Sides& u) {
+INLINE Line midline(const Places& joints, int b, int s, const Ends& left, const Ends& right) {
   const Real* at = joints.along + Index(b) * 2 * lanes + s * width;
-  return law::midline(Vector{load(at), load(at + lanes)}, u.left, u.right);
+  return law::midline(Vector{load(at), load(at + lanes)}, left, right);
 }
 
 INLINE Lanes length_of(const Places& joints, int b, int s) { return load(joints.length + Index(b) * lanes + s * width); }

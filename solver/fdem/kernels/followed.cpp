@@ -41,9 +41,9 @@ INLINE Mask grows(const Line& line, const law::Extent<Lanes>& size, Lanes r, Lan
 }
 
 INLINE void open(const View& view, int b, int s, Edges& edges) {
-  const Sides u = load_sides(view, view.followed, b, s);
-  edges.opening = law::opening_between(u.left, u.right);
-  edges.line = midline(view.followed, b, s, u);
+  const Ends left = load_side(view, view.followed.left_row, b, s), right = load_side(view, view.followed.right_row, b, s);
+  edges.opening = law::opening_between(left, right);
+  edges.line = midline(view.followed, b, s, left, right);
 }
 
 // True where damage grows.

@@ -9,12 +9,12 @@ namespace {
 INLINE Lanes furthest(const Ends& o) { return larger(o.ax * o.ax + o.az * o.az, o.bx * o.bx + o.bz * o.bz); }
 
 INLINE bool join_part(const View& view, int b, int s) {
-  const Sides u = load_sides(view, view.springs, b, s);
-  const Ends opening = law::opening_between(u.left, u.right);
+  const Ends left = load_side(view, view.springs.left_row, b, s), right = load_side(view, view.springs.right_row, b, s);
+  const Ends opening = law::opening_between(left, right);
   store_sides(view, view.springs, b, s, spring_force(spring_of(view, view.springs, b, s), opening));
   const Mask stretched = furthest(opening) > load(view.reach + Index(b) * lanes + s * width);
   if (!any(stretched)) return false;
-  return any(stretched & law::overstretched(law_of(view, view.springs, b), opening, midline(view.springs, b, s, u)));
+  return any(stretched & law::overstretched(law_of(view, view.springs, b), opening, midline(view.springs, b, s, left, right)));
 }
 
 }  // namespace
@@ -32,8 +32,8 @@ double stored(const View& view, Blocks blocks) {
   LaneSums sums;
   for (int b = blocks.begin; b < blocks.end; ++b)
     for (int s = 0; s < parts; ++s) {
-      const Sides u = load_sides(view, view.springs, b, s);
-      const Ends opening = law::opening_between(u.left, u.right);
+      const Ends left = load_side(view, view.springs.left_row, b, s), right = load_side(view, view.springs.right_row, b, s);
+      const Ends opening = law::opening_between(left, right);
       sums.part[s] = sums.part[s] + dot(spring_force(spring_of(view, view.springs, b, s), opening), opening);
     }
   return 0.5 * sums.total();

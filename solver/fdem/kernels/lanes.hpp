@@ -246,6 +246,54 @@ INLINE void store_rows(const At& at, const Lanes4& x) {
 }
 #define LANE_AT [=](int l) __attribute__((always_inline))
 
+inline constexpr int groups = width / 4;  // of four lanes in a register
+
+template <int first, int stride>
+struct OfGroups {  // groups first, first + stride, ... of a, then the same of b
+  static constexpr int of(int l) {
+    const int half = groups > 1 ? groups / 2 : 1, g = l / 4, from = first + stride * (g % half);
+    return (g / half) * width + from * 4 + l % 4;
+  }
+};
+
+// As many registers as there are groups in one, as the rows of a matrix of groups, transposed.
+INLINE void transpose_groups(Raw* x) {
+  if constexpr (groups == 4) {
+    const Raw ab_low = shuffle<OfGroups<0, 1>>(x[0], x[1]), ab_high = shuffle<OfGroups<2, 1>>(x[0], x[1]);
+    const Raw cd_low = shuffle<OfGroups<0, 1>>(x[2], x[3]), cd_high = shuffle<OfGroups<2, 1>>(x[2], x[3]);
+    x[0] = shuffle<OfGroups<0, 2>>(ab_low, cd_low), x[1] = shuffle<OfGroups<1, 2>>(ab_low, cd_low);
+    x[2] = shuffle<OfGroups<0, 2>>(ab_high, cd_high), x[3] = shuffle<OfGroups<1, 2>>(ab_high, cd_high);
+  } else if constexpr (groups == 2) {
+    const Raw a = x[0], b = x[1];
+    x[0] = shuffle<OfGroups<0, 1>>(a, b), x[1] = shuffle<OfGroups<1, 1>>(a, b);
+  }
+}
+
+// All of every lane's numbers, `quads` times four, that lie side by side in memory, one lane after another: group g of x[quads j + k] is
+// quad k of lane 4 g + j.
+template <int quads>
+INLINE void load_lines(const Real* at, Raw* x) {
+  constexpr int sets = 4 * quads / groups;
+#pragma GCC unroll 12
+  for (int n = 0; n < sets; ++n) {
+#pragma GCC unroll 4
+    for (int g = 0; g < groups; ++g) x[n * groups + g] = load(at + (n + sets * g) * width).raw;
+    transpose_groups(x + n * groups);
+  }
+}
+
+// And back; x is used up.
+template <int quads>
+INLINE void store_lines(Real* at, Raw* x) {
+  constexpr int sets = 4 * quads / groups;
+#pragma GCC unroll 12
+  for (int n = 0; n < sets; ++n) {
+    transpose_groups(x + n * groups);
+#pragma GCC unroll 4
+    for (int g = 0; g < groups; ++g) store(at + (n + sets * g) * width, x[n * groups + g]);
+  }
+}
+
 // Partial sums of a chunk, one a lane of the block.
 struct LaneSums {
   Lanes part[parts];

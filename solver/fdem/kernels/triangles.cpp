@@ -59,23 +59,31 @@ INLINE Corners pull(const Gradient& P, const Shape& B) {
   return {x1 + x2, z1 + z2, -x1, -z1, -x2, -z2};
 }
 
-// Forces of the three joints on the corners.
+// Forces of the three joints on the corners: every corner is the end of one edge and the start of the next.
 INLINE Corners joint_forces(const Real* slots) {
-  const Lanes4 e0 = load_rows(LANE_AT { return slots + l * slot_size; });
-  const Lanes4 e1 = load_rows(LANE_AT { return slots + l * slot_size + 4; });
-  const Lanes4 e2 = load_rows(LANE_AT { return slots + l * slot_size + 8; });
-  return {e0.a + e2.c, e0.b + e2.d, e0.c + e1.a, e0.d + e1.b, e1.c + e2.a, e1.d + e2.b};
+  Raw e[12];  // edge k of the triangles j, j + 4, ... at 3 j + k: forces at the start, then at the end
+  load_lines<3>(slots, e);
+  using EndsOf = InGroups<2, 3, 4, 5>;
+  const auto first_two = [&](int j) __attribute__((always_inline)) { return e[3 * j] + shuffle<EndsOf>(e[3 * j + 2], e[3 * j + 1]); };
+  const auto third = [&](int j) __attribute__((always_inline)) {
+    return shuffle<InGroups<2, 3, 6, 7>>(e[3 * j + 1], e[3 * j + 4]) + shuffle<InGroups<0, 1, 4, 5>>(e[3 * j + 2], e[3 * j + 5]);
+  };
+  const Four4 t = transposed({first_two(0), first_two(1), first_two(2), first_two(3)});
+  const Raw low = third(0), high = third(2);
+  return {t.a, t.b, t.c, t.d, shuffle<InGroups<0, 2, 4, 6>>(low, high), shuffle<InGroups<1, 3, 5, 7>>(low, high)};
 }
 
 INLINE Corners extra_forces(const Real* rows) {
-  const Lanes4 first = load_rows(LANE_AT { return rows + l * row_size; });
-  const Lanes4 rest = load_rows(LANE_AT { return rows + l * row_size + 4; });
+  Raw x[8];
+  load_lines<2>(rows, x);
+  const Four4 first = transposed({x[0], x[2], x[4], x[6]}), rest = transposed({x[1], x[3], x[5], x[7]});
   return {first.a, first.b, first.c, first.d, rest.a, rest.b};
 }
 
 INLINE void store_rows_of(Real* rows, const Corners& u) {
-  store_rows(LANE_AT { return rows + l * row_size; }, {u.x0, u.z0, u.x1, u.z1});
-  store_rows(LANE_AT { return rows + l * row_size + 4; }, {u.x2, u.z2, u.x0, u.z0});
+  const Four4 first = transposed({u.x0.raw, u.z0.raw, u.x1.raw, u.z1.raw}), rest = transposed({u.x2.raw, u.z2.raw, u.x0.raw, u.z0.raw});
+  Raw x[8] = {first.a, rest.a, first.b, rest.b, first.c, rest.c, first.d, rest.d};
+  store_lines<2>(rows, x);
 }
 
 INLINE Plastic load_plastic(const Real* at) { return {load(at), load(at + lanes), load(at + 2 * lanes), load(at + 3 * lanes)}; }
@@ -86,55 +94,66 @@ INLINE void store_plastic(Real* at, const Plastic& p) {
 INLINE law::Stiffness<Lanes> stiffness(const law::Stiffness<Real>& C) { return {C.C11, C.C13, C.C33, C.C55}; }
 INLINE J2 wide(const law::J2<Real>& j2) { return {j2.bulk, j2.mu, j2.yield, j2.hardening}; }
 
-// What the strain of one register of triangles gives.
-struct Response {
-  Stress stress;
-  Plastic plastic;
-  Lanes plastic_work;  // J/m^3, of this step
-  Lanes stored;        // J/m^3
+// What the strain of one register of triangles gives beside stress, J/m^3. (GCC 12 copies larger structures of registers to memory and
+// back.)
+struct Work {
+  Lanes plastic;  // of this step
+  Lanes stored;
 };
 
-INLINE Response elastic_response(const TriangleLaw<Real>& law, const Strain& strain) {
+INLINE Stress elastic_stress(const TriangleLaw<Real>& law, const Strain& strain, Work& work) {
   const auto C = stiffness(law.stiffness);
   const Stress stress = law::stress(C, strain);
-  return {stress, {}, Lanes(Real(0)), Lanes(Real(0.5)) * (stress.xx * strain.xx + stress.zz * strain.zz + stress.xz * strain.xz)};
+  work = {Lanes(Real(0)), Lanes(Real(0.5)) * (stress.xx * strain.xx + stress.zz * strain.zz + stress.xz * strain.xz)};
+  return stress;
 }
 
-// kept: where the plastic state lies, which is left as it is where nothing flows.
-INLINE Response plastic_response(const TriangleLaw<Real>& law, const Strain& strain, const Real* kept, bool always) {
+// From the plastic state that lies at `before`; where any of it flows, all of it goes to `after`, which may be the same place.
+INLINE Stress plastic_stress(const TriangleLaw<Real>& law, const Strain& strain, const Real* before, Real* after, bool always, Work& work) {
   const J2 j2 = wide(law.j2);
-  const Plastic old = load_plastic(kept);
-  Plastic now = old;
-  Lanes work(Real(0));
-  if (always || any(law::yields(j2, strain, old))) {
-    now = law::flow(j2, strain, old);
-    work = law::plastic_work(j2, now) - law::plastic_work(j2, old);
+  work.plastic = Lanes(Real(0));
+  if (always || any(law::yields(j2, strain, load_plastic(before)))) {
+    const Plastic old = load_plastic(before), now = law::flow(j2, strain, old);
+    work.plastic = law::plastic_work(j2, now) - law::plastic_work(j2, old);
+    store_plastic(after, now);
+    before = after;
   }
-  const auto answer = law::response(j2, strain, now);
-  return {answer.stress, now, work, answer.stored};
+  const auto answer = law::response(j2, strain, load_plastic(before));
+  work.stored = answer.stored;
+  return answer.stress;
+}
+
+template <bool plastic>
+INLINE Stress stress_of(const View& view, const TriangleLaw<Real>& law, const Strain& strain, const Real* before, Real* after, Work& work) {
+  if constexpr (plastic)
+    return plastic_stress(law, strain, before, after, view.always_flow, work);
+  else
+    return elastic_stress(law, strain, work);
+}
+
+// How a register of triangles is turned and strained.
+struct Form {
+  law::Turn<Lanes> turn;
+  Strain strain;
+};
+
+INLINE Form form_of(const Shape& B, const Corners& u) {
+  const Gradient H = gradient(u, B);
+  const auto R = law::turn(H);
+  return {R, law::biot(H, R)};
 }
 
 struct Internal {
   Gradient P;
-  Response response;
   Lanes viscous;  // W/m^3
 };
 
-template <bool plastic>
-INLINE Internal internal(const View& view, const TriangleLaw<Real>& law, const Shape& B, const Corners& u, const Corners& v,
-                         const Real* kept) {
-  const Gradient H = gradient(u, B);
-  const auto R = law::turn(H);
-  const Strain strain = law::biot(H, R), rate = law::rate(gradient(v, B), R);
-  Response response;
-  if constexpr (plastic)
-    response = plastic_response(law, strain, kept, view.always_flow);
-  else
-    response = elastic_response(law, strain);
+INLINE Internal internal(const TriangleLaw<Real>& law, const Shape& B, const Form& form, const Stress& stress, const Corners& v) {
+  const Strain rate = law::rate(gradient(v, B), form.turn);
   const Lanes xi = law.viscosity;
   const Stress drag{xi * rate.xx, xi * rate.zz, Lanes(Real(0.5)) * xi * rate.xz};
-  const Stress all{response.stress.xx + drag.xx, response.stress.zz + drag.zz, response.stress.xz + drag.xz};
-  return {law::piola(all, strain, R), response, drag.xx * rate.xx + drag.zz * rate.zz + drag.xz * rate.xz};
+  const Stress all{stress.xx + drag.xx, stress.zz + drag.zz, stress.xz + drag.xz};
+  return {law::piola(all, form.strain, form.turn), drag.xx * rate.xx + drag.zz * rate.zz + drag.xz * rate.xz};
 }
 
 // Where the registers of part s of block b lie.
@@ -172,99 +191,155 @@ INLINE void obey(const View& view, int b, int s, const Shape& B, const Corners& 
        swap(told.z1, velocity.z1, v.z1), swap(told.x2, velocity.x2, v.x2), swap(told.z2, velocity.z2, v.z2)};
 }
 
-struct AdvanceParts {
-  LaneSums viscous, plastic;
-};
-
-template <bool plastic>
-INLINE void advance_part(const View& view, const TriangleLaw<Real>& law, int b, int s, Real dt, AdvanceParts& sums) {
+// The velocities half a step on.
+INLINE Corners kicked(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P, const Corners& v, Real dt) {
   const Place at(b, s);
   const Shape B = load_shape(view.shape + at.shape);
-  const Corners u = load_corners(view.u + at.corners), v = load_corners(view.v + at.corners);
-  const Internal inside = internal<plastic>(view, law, B, u, v, view.plastic + at.plastic);
   const unsigned char needs = view.needs[b];
-  const Corners kick = kick_of(law, B, inside.P, outer_forces(view, at, needs), dt);
+  const Corners kick = kick_of(law, B, P, outer_forces(view, at, needs), dt);
   Corners faster = v + kick;
   if (needs & needs_told) obey(view, b, s, B, kick, dt, faster);
-  const Corners moved = u + Lanes(dt) * faster;
-  store_corners(view.v + at.corners, faster);
-  store_corners(view.u + at.corners, moved);
-  store_rows_of(view.rows + at.rows, moved);
-  sums.viscous.part[s] = sums.viscous.part[s] + B.area * inside.viscous;
-  if constexpr (plastic) {
-    store_plastic(view.plastic + at.plastic, inside.response.plastic);
-    sums.plastic.part[s] = sums.plastic.part[s] + B.area * inside.response.plastic_work;
-  }
+  return faster;
 }
 
-struct MeasureParts {
-  LaneSums xx, zz, elastic, plastic, viscous, kinetic, fastest;
-};
-
 INLINE void add(Lanes& sum, Lanes value) { sum = sum + value; }
+
+INLINE Lanes area_of(const View& view, const Place& at) { return load(view.shape + at.shape + 4 * lanes); }
+
+INLINE Internal internal_of(const View& view, const TriangleLaw<Real>& law, const Place& at, const Form& form, const Stress& stress) {
+  return internal(law, load_shape(view.shape + at.shape), form, stress, load_corners(view.v + at.corners));
+}
+
+struct Advance {
+  Real dt;
+  LaneSums viscous, plastic;
+
+  template <bool yields>
+  INLINE Gradient stress(const View& view, const TriangleLaw<Real>& law, int b, int s, const Form& form) {
+    const Place at(b, s);
+    Real* plastic_state = view.plastic + at.plastic;
+    Work work;
+    const Internal inside = internal_of(view, law, at, form, stress_of<yields>(view, law, form.strain, plastic_state, plastic_state, work));
+    add(viscous.part[s], area_of(view, at) * inside.viscous);
+    if constexpr (yields) add(plastic.part[s], area_of(view, at) * work.plastic);
+    return inside.P;
+  }
+  INLINE void move(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P) {
+    const Place at(b, s);
+    const Corners faster = kicked(view, law, b, s, P, load_corners(view.v + at.corners), dt);
+    const Corners moved = load_corners(view.u + at.corners) + Lanes(dt) * faster;
+    store_corners(view.v + at.corners, faster);
+    store_corners(view.u + at.corners, moved);
+    store_rows_of(view.rows + at.rows, moved);
+  }
+};
 
 INLINE Lanes product(const Corners& a, const Corners& b) {
   return ((a.x0 * b.x0 + a.z0 * b.z0) + (a.x1 * b.x1 + a.z1 * b.z1)) + (a.x2 * b.x2 + a.z2 * b.z2);
 }
 
-template <bool plastic>
-INLINE void measure_part(const View& view, const TriangleLaw<Real>& law, int b, int s, Real dt, MeasureParts& sums) {
-  const Place at(b, s);
-  const Shape B = load_shape(view.shape + at.shape);
-  const Corners u = load_corners(view.u + at.corners), v = load_corners(view.v + at.corners);
-  const Internal inside = internal<plastic>(view, law, B, u, v, view.plastic + at.plastic);
-  const unsigned char needs = view.needs[b];
-  const Corners kick = kick_of(law, B, inside.P, outer_forces(view, at, needs), dt);
-  Corners faster = v + kick;
-  if (needs & needs_told) obey(view, b, s, B, kick, dt, faster);
-  const Lanes half_mass = B.area * Lanes(Real(0.5) / law.per_mass), least(view.least_kinetic);
-  const Lanes square = product(v, v);
-  add(sums.xx.part[s], B.area * inside.P.xx);
-  add(sums.zz.part[s], B.area * inside.P.zz);
-  add(sums.elastic.part[s], B.area * inside.response.stored);
-  add(sums.plastic.part[s], B.area * inside.response.plastic_work);
-  add(sums.viscous.part[s], B.area * inside.viscous);
-  add(sums.kinetic.part[s], half_mass * larger(product(v, faster), least));
-  sums.fastest.part[s] = select(sums.fastest.part[s] > square, sums.fastest.part[s], square);
+struct Measure {
+  Real dt;
+  LaneSums xx, zz, elastic, plastic, viscous, kinetic, fastest;
+
+  template <bool yields>
+  INLINE Gradient stress(const View& view, const TriangleLaw<Real>& law, int b, int s, const Form& form) {
+    const Place at(b, s);
+    alignas(register_bytes) Real plastic_state[4 * lanes];
+    Work work;
+    const Internal inside =
+        internal_of(view, law, at, form, stress_of<yields>(view, law, form.strain, view.plastic + at.plastic, plastic_state, work));
+    const Lanes area = area_of(view, at);
+    add(xx.part[s], area * inside.P.xx);
+    add(zz.part[s], area * inside.P.zz);
+    add(elastic.part[s], area * work.stored);
+    add(plastic.part[s], area * work.plastic);
+    add(viscous.part[s], area * inside.viscous);
+    return inside.P;
+  }
+  INLINE void move(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P) {
+    const Place at(b, s);
+    const Corners v = load_corners(view.v + at.corners), faster = kicked(view, law, b, s, P, v, dt);
+    const Lanes half_mass = area_of(view, at) * Lanes(Real(0.5) / law.per_mass), least(view.least_kinetic);
+    const Lanes square = product(v, v);
+    add(kinetic.part[s], half_mass * larger(product(v, faster), least));
+    fastest.part[s] = select(fastest.part[s] > square, fastest.part[s], square);
+  }
+};
+
+constexpr int form_size = 6, stress_size = 4;
+
+INLINE void store_form(Real* at, const Form& f) {
+  store(at, f.turn.c1), store(at + width, f.turn.s), store(at + 2 * width, f.turn.per_trace);
+  store(at + 3 * width, f.strain.xx), store(at + 4 * width, f.strain.zz), store(at + 5 * width, f.strain.xz);
+}
+INLINE Form load_form(const Real* at) {
+  const Lanes c1 = load(at);
+  return {{c1, Lanes(Real(1)) + c1, load(at + width), load(at + 2 * width)},
+          {load(at + 3 * width), load(at + 4 * width), load(at + 5 * width)}};
+}
+INLINE void store_gradient(Real* at, const Gradient& g) {
+  store(at, g.xx), store(at + width, g.xz), store(at + 2 * width, g.zx), store(at + 3 * width, g.zz);
+}
+INLINE Gradient load_gradient(const Real* at) { return {load(at), load(at + width), load(at + 2 * width), load(at + 3 * width)}; }
+
+// step(law, block, part, number) for every register of the blocks.
+template <class Step>
+INLINE void for_each(const View& view, Blocks blocks, const Step& step) {
+  int i = 0;
+  for (int b = blocks.begin; b < blocks.end; ++b)
+    for (int s = 0; s < parts; ++s) step(view.laws[view.law_of_block[b]], b, s, i++);
 }
 
-// body(law, block) over the blocks, with the law's kind known when it is compiled.
-template <class Body>
-INLINE void over_blocks(const View& view, Blocks blocks, const Body& body) {
-  for (int b = blocks.begin; b < blocks.end; ++b) {
-    const TriangleLaw<Real>& law = view.laws[view.law_of_block[b]];
-    if (law.plastic)
-      body(law, b, std::true_type{});
-    else
-      body(law, b, std::false_type{});
-  }
+// A few blocks go through three short loops, so that the long way through a root, a division and the laws is gone by many at once, and each
+// loop has the registers that it needs: how triangles are turned and strained, their stress, and their motion.
+constexpr int batch_blocks = 8;
+
+template <class Job>
+INLINE void over_batch(const View& view, Blocks blocks, Job& job) {
+  alignas(register_bytes) Real forms[batch_blocks * form_size * lanes], stress[batch_blocks * stress_size * lanes];
+  for_each(
+      view, blocks, [&](const TriangleLaw<Real>&, int b, int s, int i) __attribute__((always_inline)) {
+        const Place at(b, s);
+        store_form(forms + i * form_size * width, form_of(load_shape(view.shape + at.shape), load_corners(view.u + at.corners)));
+      });
+  for_each(
+      view, blocks, [&](const TriangleLaw<Real>& law, int b, int s, int i) __attribute__((always_inline)) {
+        const Form form = load_form(forms + i * form_size * width);
+        Real* P = stress + i * stress_size * width;
+        if (law.plastic)
+          store_gradient(P, job.template stress<true>(view, law, b, s, form));
+        else
+          store_gradient(P, job.template stress<false>(view, law, b, s, form));
+      });
+  for_each(
+      view, blocks, [&](const TriangleLaw<Real>& law, int b, int s, int i) __attribute__((always_inline)) {
+        job.move(view, law, b, s, load_gradient(stress + i * stress_size * width));
+      });
+}
+
+template <class Job>
+INLINE void over_blocks(const View& view, Blocks blocks, Job& job) {
+  for (int b = blocks.begin; b < blocks.end; b += batch_blocks)
+    over_batch(view, {b, b + batch_blocks < blocks.end ? b + batch_blocks : blocks.end}, job);
 }
 
 }  // namespace
 
 AdvanceSums advance(const View& view, Blocks blocks, Real dt) {
-  AdvanceParts sums;
-  over_blocks(
-      view, blocks, [&](const TriangleLaw<Real>& law, int b, auto plastic) __attribute__((always_inline)) {
-#pragma GCC unroll 4
-        for (int s = 0; s < parts; ++s) advance_part<decltype(plastic)::value>(view, law, b, s, dt, sums);
-      });
-  return {sums.viscous.total(), sums.plastic.total()};
+  Advance job{dt, {}, {}};
+  over_blocks(view, blocks, job);
+  return {job.viscous.total(), job.plastic.total()};
 }
 
 TriangleSums measure(const View& view, Blocks blocks, Real dt) {
-  MeasureParts sums;
-  over_blocks(
-      view, blocks, [&](const TriangleLaw<Real>& law, int b, auto plastic) __attribute__((always_inline)) {
-#pragma GCC unroll 4
-        for (int s = 0; s < parts; ++s) measure_part<decltype(plastic)::value>(view, law, b, s, dt, sums);
-      });
+  Measure job{dt, {}, {}, {}, {}, {}, {}, {}};
+  over_blocks(view, blocks, job);
   Real squares[lanes];
-  for (int s = 0; s < parts; ++s) store(squares + s * width, sums.fastest.part[s]);
+  for (int s = 0; s < parts; ++s) store(squares + s * width, job.fastest.part[s]);
   double fastest = 0.0;
   for (const Real square : squares) fastest = fastest > double(square) ? fastest : double(square);
-  return {sums.xx.total(),      sums.zz.total(), sums.elastic.total(), sums.plastic.total(), sums.viscous.total(),
-          sums.kinetic.total(), fastest};
+  return {job.xx.total(), job.zz.total(), job.elastic.total(), job.plastic.total(), job.viscous.total(), job.kinetic.total(), fastest};
 }
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS
