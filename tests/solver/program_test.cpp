@@ -55,6 +55,19 @@ TEST_CASE("one scene by hand ends with a record and a summary, and reads standar
   CHECK(fs::file_size(record) > 1000);
 }
 
+TEST_CASE("threads of one run sleep while they wait for each other, and the scene is still read from standard input") {
+  const TempFolder folder;
+  const fs::path scene = folder.path / "scene.json", record = folder.path / "record.h5";
+  REQUIRE(write_atomically(scene, canonical_text(cracked("pbx", 16))));
+  const std::string tail = " - -o " + record.string() + " --threads 2 --json --quiet 2>&1";
+  const Output output = shell("cat " + scene.string() + " | OMP_DISPLAY_ENV=verbose " + program + tail);
+  CHECK(output.status == 0);
+  CHECK(output.text.find("\"verdict\": \"failed\"") != std::string::npos);
+  const std::size_t last = output.text.rfind("GOMP_SPINCOUNT");
+  REQUIRE(last != std::string::npos);
+  CHECK(output.text.substr(last, output.text.find('\n', last) - last).find("'0'") != std::string::npos);
+}
+
 TEST_CASE("bad input ends with status 2, every problem at once and no record") {
   const TempFolder folder;
   const fs::path scene = folder.path / "scene.json", record = folder.path / "record.h5";
