@@ -10,7 +10,7 @@ inline constexpr double least_damage = 1e-7;
 
 struct Rules {
   bool linear_until_damage = true;      // no work on psi until it could rise by least_damage
-  bool plastic_where_it_yields = true;  // the secant law on those rows only where it does: exact, up to rounding
+  bool plastic_where_it_yields = true;  // the secant law on those tiles only that do: exact, up to rounding
   bool sweep_where_it_moves = true;  // after the first sweeps only rows whose psi moved by more than the solve's tolerance, and beside them
   // FDEM.
   bool contact_after_break = true;     // no search before the first broken edge, and around broken edges only

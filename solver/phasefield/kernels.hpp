@@ -57,7 +57,7 @@ struct View {
   Real eta;
   RowLaw law;
   bool keeps_forces;                     // all of fx and fz are stored; else only those of the sides
-  bool tests_yield;                      // rows that may yield are tested; else all of them run the secant law
+  bool tests_yield;                      // tiles that may yield are tested; else all of them run the secant law
   const ElementRow<Real>* element_rows;  // [j] is below node row j, [j + 1] above it
   const NodeRow<Real>* node_rows;        // [j]
   const Real* column_weight;             // 1 inside, 1/2 at the sides, 0 in the pad
@@ -66,7 +66,7 @@ struct View {
   const int *pin_begin, *pins;  // columns of row j where psi = 1 is held: pins[pin_begin[j]] to pins[pin_begin[j + 1]]
   const int* node_force_begin;  // the same for
   const NodeForce<Real>* node_forces;
-  const Real* whole;                // 0 at pinned nodes, else 1
+  const Real* whole;                // 0 at pinned nodes and in the pad, else 1
   Real *ux, *uz, *vx, *vz;          // m, m/s (half a step ahead)
   Real* history[4];                 // H in the quadrants, J/m^3
   Real* reduction[4];               // secant factor s in the quadrants, valid in rows that yield

@@ -9,15 +9,14 @@
 namespace fracfarm::phasefield {
 namespace {
 
-// The error of psi is at most radius / (1 - radius) times this. Against 1e-10, over 24 runs of four classes: 1e-5 moves peaks by at most
-// 2e-6 and times to failure by nothing but in one run (0.16 %), 1e-4 by 1e-4 and 0.2 %, 1e-3 by 2e-4 and 0.8 %.
-constexpr double damage_tolerance = 1e-5;
-// Where w_0 is many cells the radius is near 1, and the tolerance is tightened so that psi's error stays below 65 of it, 6.5e-4: a broad
-// zone healed by as much. Up to w_0 = 4 h nothing changes. Corrections in float do not get below the last.
-constexpr double error_bound = 65.0;
+// The error of psi is at most radius / (1 - radius) times this, 4e-4 at w_0 = h. What it moves against 1e-9: see ACCURACY.md.
+constexpr double damage_tolerance = 1e-4;
+// Where w_0 is many cells the radius is near 1, and the tolerance is tightened so that psi's error stays below 13 of it, 1.3e-3: a broad
+// zone healed by as much. Up to w_0 = 1.7 h nothing changes. Corrections in float do not get below the last.
+constexpr double error_bound = 13.0;
 constexpr double least_tolerance = 1e-12, least_tolerance_float = 5e-7;
 // What the sweeps of the whole grid should leave of the guess's error.
-constexpr double sweeps_reduction = 0.25;
+constexpr double sweeps_reduction = 0.5;
 
 RowLaw row_law(Split split) {
   switch (split) {

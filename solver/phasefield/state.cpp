@@ -72,7 +72,9 @@ Tables<Real> make_tables(const Model& model) {
   std::sort(pinned.begin(), pinned.end());
   tables.pin_begin = row_begins(grid, pinned);
   for (const std::size_t n : pinned) tables.pins.push_back(column_of(grid, n));
-  tables.whole = grid.field<Real>(Real(1));
+  tables.whole = grid.field<Real>();
+  for (int j = 0; j < grid.rows; ++j)
+    std::fill_n(tables.whole.begin() + static_cast<std::ptrdiff_t>(grid.index(0, j)), grid.columns, Real(1));
   for (const std::size_t n : pinned) tables.whole[n] = Real(0);
   for (const Traction& traction : model.boundary.tractions) pulled.insert(pulled.end(), traction.nodes.begin(), traction.nodes.end());
   std::sort(pulled.begin(), pulled.end());

@@ -63,7 +63,7 @@ TEST_CASE("steps are linear until something could damage, and the run is the sam
     const RunResult with = run(scene), without = run(scene, rules);
     CHECK(sum(with.series["solver_iterations"]) < sum(without.series["solver_iterations"]));
     REQUIRE(with.damage_failure.size() == without.damage_failure.size());
-    for (std::size_t n = 0; n < with.damage_failure.size(); ++n) CHECK(std::abs(with.damage_failure[n] - without.damage_failure[n]) < 1e-4f);
-    CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(1e-5));
+    for (std::size_t n = 0; n < with.damage_failure.size(); ++n) CHECK(std::abs(with.damage_failure[n] - without.damage_failure[n]) < 1e-3f);
+    CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(1e-4));
   }
 }

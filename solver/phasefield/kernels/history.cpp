@@ -45,78 +45,133 @@ INLINE Real driving(Real difference) {
   return clips ? law::positive(difference) : difference;
 }
 
-// Linear elastic rows. The seed's drive (clipped normal strains, whole shear) or the whole energy, both from eight differences a node.
+// Differences of the displacements around a node, ratio = hz / hx: shear strains of the quadrants in units of 1 / hz.
+struct Differences {
+  Real xw, xe, zs, zn;
+  Real sw, se, nw, ne;  // shear
+};
+
+INLINE Differences differences(const Around& u, Index i, Real ratio) {
+  const Real xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i];
+  const Real zw = ratio * (u.z[i] - u.z[i - 1]), ze = ratio * (u.z[i + 1] - u.z[i]);
+  return {u.x[i] - u.x[i - 1], u.x[i + 1] - u.x[i], u.z[i] - u.z_south[i], u.z_north[i] - u.z[i], zw + xs, ze + xs, zw + xn, ze + xn};
+}
+
+struct Drives {
+  Real sw, se, nw, ne;
+};
+
+// Linear elastic quadrants. The seed's drive (clipped normal strains, whole shear) or the whole energy, and the stored energy.
+template <bool clips>
+INLINE Drives elastic_drives(const Differenced& n, const Differenced& s, const Differences& d, Real& stored) {
+  const Real shear_sw = s.c55 * (d.sw * d.sw), shear_se = s.c55 * (d.se * d.se);
+  const Real shear_nw = n.c55 * (d.nw * d.nw), shear_ne = n.c55 * (d.ne * d.ne);
+  stored = ((n.c11 + s.c11) * (d.xw * d.xw + d.xe * d.xe) + Real(2) * (n.c33 * (d.zn * d.zn) + s.c33 * (d.zs * d.zs))) +
+           ((d.xw + d.xe) * (n.c13 * d.zn + s.c13 * d.zs) + ((shear_sw + shear_se) + (shear_nw + shear_ne)));
+  const Real xw = driving<clips>(d.xw), xe = driving<clips>(d.xe), zs = driving<clips>(d.zs), zn = driving<clips>(d.zn);
+  const Real square_s = s.c33 * (zs * zs), square_n = n.c33 * (zn * zn), cross_s = s.c13 * zs, cross_n = n.c13 * zn;
+  return {xw * (s.c11 * xw + cross_s) + (square_s + shear_sw), xe * (s.c11 * xe + cross_s) + (square_s + shear_se),
+          xw * (n.c11 * xw + cross_n) + (square_n + shear_nw), xe * (n.c11 * xe + cross_n) + (square_n + shear_ne)};
+}
+
 template <bool clips>
 INLINE void elastic_history(const View& v, int j) {
   const Row row = row_of(v, j);
   const Around u = around(v, j);
   const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
-  const Real c11 = n.c11 + s.c11, ratio = Real(v.hz / v.hx);
+  const Real ratio = Real(v.hz / v.hx);
 #pragma omp simd
   for (Index i = 0; i < v.padded; ++i) {
-    const Real xw = u.x[i] - u.x[i - 1], xe = u.x[i + 1] - u.x[i], xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i];
-    const Real zs = u.z[i] - u.z_south[i], zn = u.z_north[i] - u.z[i];
-    const Real zw = ratio * (u.z[i] - u.z[i - 1]), ze = ratio * (u.z[i + 1] - u.z[i]);
-    const Real gsw = zw + xs, gse = ze + xs, gnw = zw + xn, gne = ze + xn;
-    const Real shear_sw = s.c55 * (gsw * gsw), shear_se = s.c55 * (gse * gse);
-    const Real shear_nw = n.c55 * (gnw * gnw), shear_ne = n.c55 * (gne * gne);
-    row.stored[i] = (c11 * (xw * xw + xe * xe) + Real(2) * (n.c33 * (zn * zn) + s.c33 * (zs * zs))) +
-                    ((xw + xe) * (n.c13 * zn + s.c13 * zs) + ((shear_sw + shear_se) + (shear_nw + shear_ne)));
-    const Real dw = driving<clips>(xw), de = driving<clips>(xe), ds = driving<clips>(zs), dn = driving<clips>(zn);
-    const Real square_s = s.c33 * (ds * ds), square_n = n.c33 * (dn * dn), cross_s = s.c13 * ds, cross_n = n.c13 * dn;
-    commit(row, i, dw * (s.c11 * dw + cross_s) + (square_s + shear_sw), de * (s.c11 * de + cross_s) + (square_s + shear_se),
-           dw * (n.c11 * dw + cross_n) + (square_n + shear_nw), de * (n.c11 * de + cross_n) + (square_n + shear_ne));
+    const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), row.stored[i]);
+    commit(row, i, drives.sw, drives.se, drives.nw, drives.ne);
   }
 }
 
-// Rows where the secant law yields: drive and potential with the reduced moduli, whose factor is kept for the force. Past yield the
-// potential is the elastic energy less (1 - h) (q - sigma_y)^2 / 6 mu, see law::stored_energy.
-template <class Split>
-INLINE Real secant_quadrant(const SecantRow& row, const Strain& e, Real& drive, Real& reduction) {
-  const Real q = std::sqrt(law::von_mises_squared(row.law, e));
-  const Real past = larger(q - row.law.yield, Real(0));
-  reduction = law::reduction(row.law, q);
-  drive = Split{reduced(row, reduction)}.drive(e);
-  return law::strain_energy(row.elastic, e) - row.excess * (past * past);
+// The secant law of a row of elements in differences of displacements. With p = (q / sigma_y)^2, a quadratic form of the strain, and
+// r = sigma_y / q past yield, else 1, yielding takes the share (1 - h) (1 - r) of mu: the drive loses `drive` (1 - r) p of the strain that
+// drives, and the potential `energy` (q / sigma_y - 1)^2, see law::stored_energy. All are 0 where the row does not yield at all.
+struct Yielding {
+  Real normal_x, normal_z, cross, shear;  // of p
+  Real soft;                              // 1 - h
+  Real drive, energy;                     // J/m^3
+
+  INLINE Real p(Real x, Real z, Real shear_difference) const {
+    return (normal_x * (x * x) + normal_z * (z * z)) + (shear * (shear_difference * shear_difference) - cross * (x * z));
+  }
+};
+
+INLINE Yielding yielding(const View& v, const ElementRow& row) {
+  if (!row.plastic) return {};
+  const double mu = row.secant.mu, yield = row.secant.yield, soft = 1.0 - double(row.secant.hardening_share);
+  const double unit = 6.0 * mu * mu / (yield * yield), x = 1.0 / v.hx, z = 1.0 / v.hz;
+  return {Real(2.0 / 3.0 * unit * x * x),
+          Real(2.0 / 3.0 * unit * z * z),
+          Real(2.0 / 3.0 * unit * x * z),
+          Real(0.5 * unit * z * z),
+          Real(soft),
+          Real(soft * mu / unit),
+          Real(soft * yield * yield / (6.0 * mu))};
 }
 
-template <class Split>
-INLINE void secant_history(const View& v, int j) {
+// What yielding takes from a quadrant.
+template <bool clips>
+INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction) {
+  const Real p = larger(law.p(x, z, shear), Real(1)), r = Real(1) / std::sqrt(p), past = p * r - Real(1), lost = Real(1) - r;
+  drive -= law.drive * lost * (clips ? law.p(driving<clips>(x), driving<clips>(z), shear) : p);
+  stored -= law.energy * (past * past);
+  reduction = Real(1) - law.soft * lost;
+}
+
+// Rows that may yield: elastic first, and the tiles that yield once more. Of nodes that a crack holds nothing but the residual stiffness is
+// left, and an open crack's strain is no strain of the metal: they do not make a tile yield. Returns whether any does.
+template <bool clips>
+INLINE bool plastic_history(const View& v, int j) {
   const Row row = row_of(v, j);
   const Around u = around(v, j);
-  const SecantRow n = secant_row(v.element_rows[j + 1]), s = secant_row(v.element_rows[j]);
-  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
+  const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
+  const Yielding above = yielding(v, v.element_rows[j + 1]), below = yielding(v, v.element_rows[j]);
+  const Real ratio = Real(v.hz / v.hx);
   const Index at = row_at(v, j);
+  const Real* whole = v.whole + at;
+  Real *sw = scratch_row(v, first_free_row), *se = scratch_row(v, first_free_row + 1), *nw = scratch_row(v, first_free_row + 2),
+       *ne = scratch_row(v, first_free_row + 3), *most = scratch_row(v, first_free_row + 4);
+  Real row_most = Real(0);
+#pragma omp simd reduction(max : row_most)
+  for (Index i = 0; i < v.padded; ++i) {
+    const Differences d = differences(u, i, ratio);
+    const Drives drives = elastic_drives<clips>(n, s, d, row.stored[i]);
+    sw[i] = drives.sw, se[i] = drives.se, nw[i] = drives.nw, ne[i] = drives.ne;
+    const Real p_south = larger(below.p(d.xw, d.zs, d.sw), below.p(d.xe, d.zs, d.se));
+    const Real p = whole[i] * larger(p_south, larger(above.p(d.xw, d.zn, d.nw), above.p(d.xe, d.zn, d.ne)));
+    most[i] = p;
+    row_most = larger(p, row_most);
+  }
+  const bool yields = !v.tests_yield || row_most > Real(1);
   Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
-  along_row(
-      v.padded, ROW_BODY {
-        const Quadrants e = strains(u, i, per_hx, per_hz);
-        Real sw, se, nw, ne;
-        const Real w_sw = secant_quadrant<Split>(s, e.sw, sw, r0[i]), w_se = secant_quadrant<Split>(s, e.se, se, r1[i]);
-        const Real w_nw = secant_quadrant<Split>(n, e.nw, nw, r2[i]), w_ne = secant_quadrant<Split>(n, e.ne, ne, r3[i]);
-        row.stored[i] = (w_sw + w_se) + (w_nw + w_ne);
-        commit(row, i, sw, se, nw, ne);
-      });
+  for (Index tile = 0; yields && tile < v.padded; tile += lanes) {
+    if (!v.tests_yield || largest(most + tile) > Real(1))
+      along_tile(
+          tile, TILE_BODY {
+            const Differences d = differences(u, i, ratio);
+            yield<clips>(below, d.xw, d.zs, d.sw, sw[i], row.stored[i], r0[i]);
+            yield<clips>(below, d.xe, d.zs, d.se, se[i], row.stored[i], r1[i]);
+            yield<clips>(above, d.xw, d.zn, d.nw, nw[i], row.stored[i], r2[i]);
+            yield<clips>(above, d.xe, d.zn, d.ne, ne[i], row.stored[i], r3[i]);
+          });
+    else
+      along_tile(
+          tile, TILE_BODY { r0[i] = r1[i] = r2[i] = r3[i] = Real(1); });
+  }
+#pragma omp simd
+  for (Index i = 0; i < v.padded; ++i) commit(row, i, sw[i], se[i], nw[i], ne[i]);
+  return yields;
 }
 
-// Of nodes that a crack holds nothing but the residual stiffness is left, and an open crack's strain is no strain of the metal: they do not
-// count.
-INLINE bool yields(const View& v, int j) {
-  const ElementRow &above = v.element_rows[j + 1], &below = v.element_rows[j];
-  if (!above.plastic && !below.plastic) return false;
-  if (!v.tests_yield) return true;
-  const Around u = around(v, j);
-  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
-  const Secant n = above.secant, s = below.secant;
-  const Real* whole = v.whole + row_at(v, j);
-  Real north = Real(0), south = Real(0);
-#pragma omp simd reduction(max : north, south)
-  for (Index i = 0; i < v.columns; ++i) {
-    const Quadrants e = strains(u, i, per_hx, per_hz);
-    north = larger(whole[i] * larger(law::von_mises_squared(n, e.nw), law::von_mises_squared(n, e.ne)), north);
-    south = larger(whole[i] * larger(law::von_mises_squared(s, e.sw), law::von_mises_squared(s, e.se)), south);
-  }
-  return (above.plastic && north > n.yield * n.yield) || (below.plastic && south > s.yield * s.yield);
+template <bool clips>
+INLINE void driving_history(const View& v, int j) {
+  const bool may_yield = v.element_rows[j + 1].plastic || v.element_rows[j].plastic;
+  v.row_yields[j] = may_yield && plastic_history<clips>(v, j);
+  if (!may_yield) elastic_history<clips>(v, j);
 }
 
 // Splits that keep a part of the energy: its sum over the row, J/m.
@@ -141,16 +196,10 @@ INLINE double split_history(const View& v, int j) {
 INLINE double history_row(const View& v, int j) {
   switch (v.law) {
     case RowLaw::seed:
-      if ((v.row_yields[j] = yields(v, j)))
-        secant_history<law::SeedSplit<Real>>(v, j);
-      else
-        elastic_history<true>(v, j);
+      driving_history<true>(v, j);
       return 0.0;
     case RowLaw::none:
-      if ((v.row_yields[j] = yields(v, j)))
-        secant_history<law::NoSplit<Real>>(v, j);
-      else
-        elastic_history<false>(v, j);
+      driving_history<false>(v, j);
       return 0.0;
     case RowLaw::spectral:
       return split_history<law::SpectralSplit<Real>>(v, j);

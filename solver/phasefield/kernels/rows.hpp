@@ -55,14 +55,17 @@ inline constexpr Index width = 32 / sizeof(Real);
 inline constexpr Index width = 16 / sizeof(Real);
 #endif
 template <class Body>
-INLINE void along_tiles(Index n, const Body& body) {
-  for (Index tile = 0; tile < n; tile += lanes)
-    for (Index part = 0; part < lanes; part += width) {
+INLINE void along_tile(Index tile, const Body& body) {
+  for (Index part = 0; part < lanes; part += width) {
 #pragma omp simd
-      for (Index l = part; l < part + width; ++l) body(tile + l, l);
-    }
+    for (Index l = part; l < part + width; ++l) body(tile + l, l);
+  }
 }
-#define TILE_BODY [&](Index i, Index l) __attribute__((always_inline))
+template <class Body>
+INLINE void along_tiles(Index n, const Body& body) {
+  for (Index tile = 0; tile < n; tile += lanes) along_tile(tile, body);
+}
+#define TILE_BODY [&](Index i, [[maybe_unused]] Index l) __attribute__((always_inline))
 
 struct Quadrants {
   Strain sw, se, nw, ne;
@@ -88,6 +91,14 @@ INLINE double ordered_sum(const Partial& part) {
   for (int l = 0; l < 8; ++l) eight[l] = part.at[l] + part.at[l + 8];
   for (int l = 0; l < 4; ++l) four[l] = eight[l] + eight[l + 4];
   return (four[0] + four[2]) + (four[1] + four[3]);
+}
+
+// Of the numbers of a tile.
+INLINE Real largest(const Real* x) {
+  Real eight[8], four[4];
+  for (int l = 0; l < 8; ++l) eight[l] = larger(x[l], x[l + 8]);
+  for (int l = 0; l < 4; ++l) four[l] = larger(eight[l], eight[l + 4]);
+  return larger(larger(four[0], four[2]), larger(four[1], four[3]));
 }
 
 // Sum of n (a multiple of `lanes`) numbers.
@@ -117,13 +128,9 @@ INLINE HalfEdges half_edges(const View& v, int j) {
 struct SecantRow {
   Stiffness elastic;
   Secant law;
-  Real excess;  // (1 - hardening share) / 6 mu
 };
 
-INLINE SecantRow secant_row(const ElementRow& row) {
-  const Real mu = row.secant.mu;
-  return {row.stiffness, row.secant, mu > Real(0) ? (Real(1) - row.secant.hardening_share) / (Real(6) * mu) : Real(0)};
-}
+INLINE SecantRow secant_row(const ElementRow& row) { return {row.stiffness, row.secant}; }
 
 // Moduli with mu -> s mu and the bulk modulus kept.
 INLINE Stiffness reduced(const SecantRow& row, Real s) {
