@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace fracfarm::fdem {
 namespace {
@@ -11,10 +10,9 @@ using Index = std::size_t;
 
 int law_of(const Plan& plan, int joint) { return plan.joint_law_of_block[static_cast<Index>(joint / lanes)]; }
 
-// m^2: a spring that opens less at both ends does not soften.
+// m^2: a spring of the law that opens less at both ends does not soften.
 template <class Real>
-Real reach_of(const Plan& plan, int joint) {
-  const auto& law = plan.joint_laws[static_cast<Index>(law_of(plan, joint))];
+Real reach_of(const law::Joint<double>& law) {
   const double onset = 1.0 / std::max(law.per_onset_n, law.per_onset_t);
   return static_cast<Real>(onset * onset);
 }
@@ -120,6 +118,7 @@ void copy(const Field<Real>& from, Index old_place, Field<Real>& to, Index place
 template <class Real>
 void set_springs(const Plan& plan, Scratch<Real>& scratch) {
   scratch.springs = {}, scratch.reach.clear();
+  for (const auto& law : plan.joint_laws) scratch.reach.push_back(reach_of<Real>(law));
   scratch.spring_of.assign(static_cast<Index>(plan.joints), -1);
   Index next = 0;
   for (int joint = 0; joint < plan.joints; ++joint) {
@@ -129,10 +128,8 @@ void set_springs(const Plan& plan, Scratch<Real>& scratch) {
     if (scratch.springs.law_of_block.empty() || scratch.springs.law_of_block.back() != law) next = scratch.springs.joint_at.size();
     if (next == scratch.springs.joint_at.size()) {
       add_block_of_pads(plan, scratch.springs, law);
-      scratch.reach.insert(scratch.reach.end(), lanes, std::numeric_limits<Real>::max());
     }
     put(plan, scratch.springs, next, joint);
-    scratch.reach[next] = reach_of<Real>(plan, joint);
     scratch.spring_of[j] = static_cast<int>(next++);
   }
   scratch.softens.assign(scratch.springs.law_of_block.size(), 0);
@@ -149,7 +146,6 @@ void follow(const Plan& plan, State<Real>& state, Scratch<Real>& scratch, int jo
     state.force[in_block(place, 4, i)] = static_cast<Real>(spring * (2.0 * at_onset[i] + at_onset[(i + 2) % 4]));
   }
   make_pad(plan, scratch.springs, static_cast<Index>(scratch.spring_of[j]));
-  scratch.reach[static_cast<Index>(scratch.spring_of[j])] = std::numeric_limits<Real>::max();
 }
 
 template <class Real>

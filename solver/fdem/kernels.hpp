@@ -61,7 +61,7 @@ struct View {
   Real* told_force;                  // [i][corner_count][l], N/m: internal force and extra
   // Joints that are springs so far, and those that are followed (with damage, or near it).
   JointPlaces<Real> springs, followed;
-  const Real* reach;       // [b][l], m^2: springs that open further at an end may soften; largest number where none can
+  const Real* reach;       // by law, m^2: springs that open further at an end may soften
   unsigned char* softens;  // [b]: 1 where a spring of the block does
   Real *damage, *kept;     // [b][2][l], at the two points; and the curve's z of it
   Real *opening, *force;   // [b][4][l], m, N/m: of the left triangle at both nodes, where it was last followed
@@ -86,7 +86,8 @@ struct AdvanceSums {
 // The state as it is, without moving it.
 struct TriangleSums {
   double stress_xx, stress_zz;  // N: over the area
-  double elastic, plastic;      // J/m; plastic is what this configuration would still add
+  double elastic, joints;       // J/m, stored; joints are springs along secants, so that it is half of what their forces do along openings
+  double plastic;               // J/m, what this configuration would still add
   double viscous;               // W/m
   double kinetic;               // J/m: 1/2 m v- v+ of the velocities half a step before and after, by triangle no less than `least_kinetic`
   double fastest;               // m^2/s^2, largest square of a velocity
@@ -102,9 +103,6 @@ struct Kernels {
   void (*join)(const View<Real>&, Blocks);
   // The same of followed joints, over what join left there; returns the work that is gone, J/m.
   double (*follow)(const View<Real>&, Blocks);
-  // What springs store, and what followed joints do, J/m.
-  double (*stored)(const View<Real>&, Blocks);
-  double (*stored_by_followed)(const View<Real>&, Blocks);
 };
 
 // Paths that this processor runs, best first; the last is the baseline, which every processor runs.

@@ -86,7 +86,7 @@ struct JointList {
 template <class Real>
 struct Scratch {
   JointList<Real> springs;             // pads where joints were followed since they were last settled
-  Field<Real> reach;                   // of springs
+  Field<Real> reach;                   // by law of joints
   std::vector<unsigned char> softens;  // by block of springs
   JointList<Real> followed;            // those settled, and in blocks of their own those that came after
   int settled_blocks = 0;

@@ -42,7 +42,8 @@ TriangleSums Fdem<Real>::measure(double dt) const {
   const auto job = [&](Blocks blocks) { return kernels_.measure(v, blocks, static_cast<Real>(dt)); };
   TriangleSums all{};
   for (const TriangleSums& part : in_chunks<TriangleSums>(plan_.triangle_blocks(), triangle_chunk, threads_, job)) {
-    all.stress_xx += part.stress_xx, all.stress_zz += part.stress_zz, all.elastic += part.elastic, all.plastic += part.plastic;
+    all.stress_xx += part.stress_xx, all.stress_zz += part.stress_zz, all.elastic += part.elastic, all.joints += part.joints;
+    all.plastic += part.plastic;
     all.viscous += part.viscous, all.kinetic += part.kinetic, all.fastest = std::max(all.fastest, part.fastest);
   }
   return all;
@@ -134,17 +135,6 @@ void Fdem<Real>::soften(double time) {
   if (is_unsettled(state_)) settle(plan_, state_, scratch_);
 }
 
-template <class Real>
-double Fdem<Real>::stored_in_joints() const {
-  const View<Real> v = view();
-  const auto springs = [&](Blocks blocks) { return kernels_.stored(v, blocks); };
-  const auto followed = [&](Blocks blocks) { return kernels_.stored_by_followed(v, blocks); };
-  double sum = 0.0;
-  for (const double part : in_chunks<double>(scratch_.springs.blocks(), triangle_chunk, threads_, springs)) sum += part;
-  for (const double part : in_chunks<double>(scratch_.followed.blocks(), triangle_chunk, threads_, followed)) sum += part;
-  return sum;
-}
-
 #define FRACFARM_INSTANTIATE(Real)                                               \
   template AdvanceSums Fdem<Real>::advance(double);                              \
   template TriangleSums Fdem<Real>::measure(double) const;                       \
@@ -152,8 +142,7 @@ double Fdem<Real>::stored_in_joints() const {
   template void Fdem<Real>::join_springs(const View<Real>&, Share&, int) const;  \
   template void Fdem<Real>::join_followed(const View<Real>&, Share&, int) const; \
   template AdvanceSums Fdem<Real>::advance_and_join(double);                     \
-  template void Fdem<Real>::soften(double);                                      \
-  template double Fdem<Real>::stored_in_joints() const;
+  template void Fdem<Real>::soften(double);
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)
 #undef FRACFARM_INSTANTIATE

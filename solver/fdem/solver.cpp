@@ -99,7 +99,7 @@ Result<void> Fdem<Real>::start(double dt) {
   tell_velocities(0.5 * dt);
   const TriangleSums sums = measure(dt);
   state_.ledger.external_work = given;
-  state_.ledger.initial_energy = sums.kinetic + sums.elastic + stored_in_joints() - given;
+  state_.ledger.initial_energy = sums.kinetic + sums.elastic + sums.joints - given;
   return {};
 }
 
@@ -152,7 +152,7 @@ SampleRow Fdem<Real>::sample(long long n, double dt) const {
   row.reaction = reactions(dt);
   row.crack_length = ledger.crack_length;
   row.kinetic_energy = sums.kinetic;
-  row.elastic_energy = sums.elastic + stored_in_joints();
+  row.elastic_energy = sums.elastic + sums.joints;
   row.plastic_energy = ledger.plastic + sums.plastic;
   const ContactEnergies& contact = contact_.energies();
   row.contact_energy = contact.stored, row.friction_energy = contact.friction;

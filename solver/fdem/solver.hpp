@@ -63,7 +63,6 @@ class Fdem final : public MeshSimulation {
   void join_springs(const View<Real>& view, Share& share, int chunk) const;
   void join_followed(const View<Real>& view, Share& share, int chunk) const;
   void soften(double time);
-  double stored_in_joints() const;
   void put_rows();
   void tell_velocities(double time);
   void pull(double time);

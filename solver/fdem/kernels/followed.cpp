@@ -100,10 +100,10 @@ INLINE void pull(const View& view, int b, int s, const Edges& edges, LaneSums& g
   const Joint law = law_of(view, view.followed, b);
   const Place at(b, s);
   const Damage damage = load_pair(view.damage + at.pairs), kept = load_pair(view.kept + at.pairs);
-  const Ends softened = ends_of(is_whole(damage), length_of(view.followed, b, s), traction(law, edges.line, edges.p, damage.p, kept.p),
-                                traction(law, edges.line, edges.q, damage.q, kept.q));
+  Ends force = ends_of(is_whole(damage), length_of(view.followed, b, s), traction(law, edges.line, edges.p, damage.p, kept.p),
+                       traction(law, edges.line, edges.q, damage.q, kept.q));
   const Mask damaged = larger(damage.p, damage.q) > Lanes(Real(0));
-  const Ends force = choose(damaged, softened, spring_force(spring_of(view, view.followed, b, s), edges.opening));
+  if (any(~damaged)) force = choose(damaged, force, spring_force(spring_of(view, view.followed, b, s), edges.opening));
   const Ends last_force = load_ends(view.force + at.fours), last_opening = load_ends(view.opening + at.fours);
   const Lanes lost = Lanes(Real(0.5)) * (dot(last_force, edges.opening) - dot(force, last_opening));
   gone.part[s] = gone.part[s] + select(damaged, lost, Lanes(Real(0)));
@@ -152,16 +152,6 @@ INLINE double follow_with(const View& view, Blocks blocks) {
 
 double follow(const View& view, Blocks blocks) {
   return view.curve == Curve::munjiza ? follow_with<law::Munjiza>(view, blocks) : follow_with<law::LinearSoftening>(view, blocks);
-}
-
-double stored_by_followed(const View& view, Blocks blocks) {
-  LaneSums sums;
-  for (int b = blocks.begin; b < blocks.end; ++b)
-    for (int s = 0; s < parts; ++s) {
-      const Index at = Place(b, s).fours;
-      sums.part[s] = sums.part[s] + dot(load_ends(view.force + at), load_ends(view.opening + at));
-    }
-  return 0.5 * sums.total();
 }
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS

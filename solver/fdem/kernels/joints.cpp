@@ -12,7 +12,7 @@ INLINE bool join_part(const View& view, int b, int s) {
   const Ends left = load_side(view, view.springs.left_row, b, s), right = load_side(view, view.springs.right_row, b, s);
   const Ends opening = law::opening_between(left, right);
   store_sides(view, view.springs, b, s, spring_force(spring_of(view, view.springs, b, s), opening));
-  const Mask stretched = furthest(opening) > load(view.reach + Index(b) * lanes + s * width);
+  const Mask stretched = furthest(opening) > Lanes(view.reach[view.springs.law_of_block[b]]);
   if (!any(stretched)) return false;
   return any(stretched & law::overstretched(law_of(view, view.springs, b), opening, midline(view.springs, b, s, left, right)));
 }
@@ -26,17 +26,6 @@ void join(const View& view, Blocks blocks) {
     for (int s = 0; s < parts; ++s) softens |= join_part(view, b, s);
     view.softens[b] = softens;
   }
-}
-
-double stored(const View& view, Blocks blocks) {
-  LaneSums sums;
-  for (int b = blocks.begin; b < blocks.end; ++b)
-    for (int s = 0; s < parts; ++s) {
-      const Ends left = load_side(view, view.springs.left_row, b, s), right = load_side(view, view.springs.right_row, b, s);
-      const Ends opening = law::opening_between(left, right);
-      sums.part[s] = sums.part[s] + dot(spring_force(spring_of(view, view.springs, b, s), opening), opening);
-    }
-  return 0.5 * sums.total();
 }
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS

@@ -9,13 +9,11 @@ AdvanceSums advance(const View<Real>&, Blocks, Real dt);
 TriangleSums measure(const View<Real>&, Blocks, Real dt);
 void join(const View<Real>&, Blocks);
 double follow(const View<Real>&, Blocks);
-double stored(const View<Real>&, Blocks);
-double stored_by_followed(const View<Real>&, Blocks);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
 extern const Kernels<Real> table;
-const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), advance, measure, join, follow, stored, stored_by_followed};
+const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), advance, measure, join, follow};
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS

@@ -167,10 +167,8 @@ struct Place {
         slots((Index(b) * lanes + s * width) * slot_size) {}
 };
 
-INLINE Corners outer_forces(const View& view, const Place& at, unsigned char needs) {
-  Corners f = joint_forces(view.slots + at.slots);
-  if (needs & needs_extra) f = f + extra_forces(view.extra + at.rows);
-  return f;
+INLINE Corners outer_forces(const View& view, const Place& at, unsigned char needs, const Corners& joints) {
+  return needs & needs_extra ? joints + extra_forces(view.extra + at.rows) : joints;
 }
 
 // dt f / m of a register of triangles.
@@ -192,11 +190,12 @@ INLINE void obey(const View& view, int b, int s, const Shape& B, const Corners& 
 }
 
 // The velocities half a step on.
-INLINE Corners kicked(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P, const Corners& v, Real dt) {
+INLINE Corners kicked(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P, const Corners& joints,
+                      const Corners& v, Real dt) {
   const Place at(b, s);
   const Shape B = load_shape(view.shape + at.shape);
   const unsigned char needs = view.needs[b];
-  const Corners kick = kick_of(law, B, P, outer_forces(view, at, needs), dt);
+  const Corners kick = kick_of(law, B, P, outer_forces(view, at, needs, joints), dt);
   Corners faster = v + kick;
   if (needs & needs_told) obey(view, b, s, B, kick, dt, faster);
   return faster;
@@ -226,7 +225,7 @@ struct Advance {
   }
   INLINE void move(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P) {
     const Place at(b, s);
-    const Corners faster = kicked(view, law, b, s, P, load_corners(view.v + at.corners), dt);
+    const Corners faster = kicked(view, law, b, s, P, joint_forces(view.slots + at.slots), load_corners(view.v + at.corners), dt);
     const Corners moved = load_corners(view.u + at.corners) + Lanes(dt) * faster;
     store_corners(view.v + at.corners, faster);
     store_corners(view.u + at.corners, moved);
@@ -240,7 +239,7 @@ INLINE Lanes product(const Corners& a, const Corners& b) {
 
 struct Measure {
   Real dt;
-  LaneSums xx, zz, elastic, plastic, viscous, kinetic, fastest;
+  LaneSums xx, zz, elastic, joints, plastic, viscous, kinetic, fastest;
 
   template <bool yields>
   INLINE Gradient stress(const View& view, const TriangleLaw<Real>& law, int b, int s, const Form& form) {
@@ -259,7 +258,9 @@ struct Measure {
   }
   INLINE void move(const View& view, const TriangleLaw<Real>& law, int b, int s, const Gradient& P) {
     const Place at(b, s);
-    const Corners v = load_corners(view.v + at.corners), faster = kicked(view, law, b, s, P, v, dt);
+    const Corners from_joints = joint_forces(view.slots + at.slots);
+    add(joints.part[s], product(from_joints, load_corners(view.u + at.corners)));
+    const Corners v = load_corners(view.v + at.corners), faster = kicked(view, law, b, s, P, from_joints, v, dt);
     const Lanes half_mass = area_of(view, at) * Lanes(Real(0.5) / law.per_mass), least(view.least_kinetic);
     const Lanes square = product(v, v);
     add(kinetic.part[s], half_mass * larger(product(v, faster), least));
@@ -333,13 +334,20 @@ AdvanceSums advance(const View& view, Blocks blocks, Real dt) {
 }
 
 TriangleSums measure(const View& view, Blocks blocks, Real dt) {
-  Measure job{dt, {}, {}, {}, {}, {}, {}, {}};
+  Measure job{dt, {}, {}, {}, {}, {}, {}, {}, {}};
   over_blocks(view, blocks, job);
   Real squares[lanes];
   for (int s = 0; s < parts; ++s) store(squares + s * width, job.fastest.part[s]);
   double fastest = 0.0;
   for (const Real square : squares) fastest = fastest > double(square) ? fastest : double(square);
-  return {job.xx.total(), job.zz.total(), job.elastic.total(), job.plastic.total(), job.viscous.total(), job.kinetic.total(), fastest};
+  return {.stress_xx = job.xx.total(),
+          .stress_zz = job.zz.total(),
+          .elastic = job.elastic.total(),
+          .joints = -0.5 * job.joints.total(),
+          .plastic = job.plastic.total(),
+          .viscous = job.viscous.total(),
+          .kinetic = job.kinetic.total(),
+          .fastest = fastest};
 }
 
 }  // namespace fracfarm::fdem::FRACFARM_KERNELS
