@@ -11,8 +11,8 @@ namespace {
 
 // The error of psi is at most radius / (1 - radius) times this, 4e-4 at w_0 = h. What it moves against 1e-9: see ACCURACY.md.
 constexpr double damage_tolerance = 1e-4;
-// Where w_0 is many cells the radius is near 1, and the tolerance is tightened so that psi's error stays below 13 of it, 1.3e-3: a broad
-// zone healed by as much. Up to w_0 = 1.7 h nothing changes. Corrections in float do not get below the last.
+// Where w_0 is many cells the radius is near 1, and the tolerance is tightened so that psi's error stays below 13 of it, 1.3e-3. Up to
+// w_0 = 1.7 h nothing changes. Corrections in float do not get below the last.
 constexpr double error_bound = 13.0;
 constexpr double least_tolerance = 1e-12, least_tolerance_float = 5e-7;
 // What the sweeps of the whole grid should leave of the guess's error.
