@@ -17,6 +17,7 @@ std::uint64_t first_frame_after(long long n, double interval, double dt) {
 }
 
 long long steps_per_row(const Scene& scene, double dt) {
+  const double mesh_row_interval = std::max(least_mesh_row_interval, scene.horizon / mesh_rows);
   if (scene.method == Method::fdem) return std::max(1LL, std::llround(mesh_row_interval / dt));
   return scene.phase_field.integrator == Integrator::explicit_central ? explicit_steps_per_row : 1;
 }

@@ -11,9 +11,9 @@
 namespace fracfarm {
 
 // A grid: one row every so many explicit steps or every implicit one, and one at the step of the stress drop, so that the series gives it
-// to the step. A mesh: one row every so many seconds, to the step.
+// to the step. A mesh: as many rows over the horizon, but none closer than so many seconds, each to the step. drop10 is read to a row.
 inline constexpr long long explicit_steps_per_row = 4;
-inline constexpr double mesh_row_interval = 0.5e-6;  // s
+inline constexpr double mesh_rows = 4000.0, least_mesh_row_interval = 0.5e-6;  // s
 
 class RunLog {
  public:

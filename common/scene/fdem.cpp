@@ -61,13 +61,21 @@ double triangle_count(const Scene& scene) {
   return scene.width * scene.height / (triangle_share * scene.fdem.element_size * scene.fdem.element_size);
 }
 
+FdemSettings defaults_of(FdemTier tier) {
+  FdemSettings settings;
+  settings.tier = tier;
+  if (tier == FdemTier::screening) settings.element_size *= 2.0;
+  if (tier == FdemTier::reference) settings.dt_fraction *= 0.5;
+  return settings;
+}
+
 void read_fdem(Fields& top, Scene& scene) {
   const json* value = top.value("fdem");
   if (!value) return;
   FdemSettings& settings = scene.fdem;
   Fields fields(*value, "fdem", top.problems());
   fields.word("tier", tier_words, settings.tier);
-  if (settings.tier == FdemTier::screening) settings.element_size = 2.0 * FdemSettings{}.element_size;
+  settings = defaults_of(settings.tier);
   fields.number("element_size", {1e-7, 1e3, "m"}, settings.element_size);
   fields.word("softening", softening_words, settings.softening);
   fields.integer("mesh_seed", 0, UINT64_MAX, settings.mesh_seed);

@@ -113,10 +113,12 @@ struct FdemSettings {
   std::optional<double> penalty;  // p h / E (reference) or p h / C11 (fast, screening); the tier's: 100, 10
   double viscosity = 0.1;         // of 2 h sqrt(E rho)
   double contact_penalty = 1.0;   // of E
-  double dt_fraction = 0.7;       // of the mesh's bound
+  double dt_fraction = 0.7;       // of the mesh's bound; 0.35 in the reference tier where it is not given
   std::optional<double> dt;       // s, instead of dt_fraction
   bool operator==(const FdemSettings&) const = default;
 };
+
+FdemSettings defaults_of(FdemTier tier);
 
 // What a rehearsal job does instead of a simulation; see FARM.md.
 enum class DrillAct { sleep, crash, hang, leak, truncated, bit_flipped, wrong_job, nan, ignore_term };

@@ -50,6 +50,12 @@ TEST_CASE("a penalty that leaves the triangles no stiffness between the joints i
   problem_at(problems_of(stiff_upwards), "fdem.penalty");
 }
 
+TEST_CASE("the reference tier takes half the others' step, unless it is given") {
+  CHECK(scene_of(fdem_scene({{"tier", "fast"}})).fdem.dt_fraction == 0.7);
+  CHECK(scene_of(fdem_scene({{"tier", "reference"}})).fdem.dt_fraction == 0.35);
+  CHECK(scene_of(fdem_scene({{"tier", "reference"}, {"dt_fraction", 0.7}})).fdem.dt_fraction == 0.7);
+}
+
 TEST_CASE("the screening tier has elements twice as long, unless they are given") {
   CHECK(scene_of(fdem_scene({{"tier", "screening"}})).fdem.element_size == 0.006);
   CHECK(scene_of(fdem_scene({{"tier", "screening"}, {"element_size", 0.004}})).fdem.element_size == 0.004);

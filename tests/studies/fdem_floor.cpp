@@ -28,14 +28,14 @@ void softer(Scene& scene) { scene.fdem.penalty = 90.0; }  // E/h, in place of 10
 // The reference tier's penalty and numbers, between triangles that make up for the joints: as stiff as the material.
 void made_up_for(Scene& scene) {
   const Material& material = scene.layers.front().material;
-  scene.fdem.tier = FdemTier::fast;
+  scene.fdem.tier = FdemTier::fast;  // at the reference tier's step
   scene.fdem.penalty = 100.0 * fdem::young_of(material) / material.elasticity.C11;
   scene.fdem.precision = Precision::double_;
 }
 
 void another_mesh(Scene& scene) { ++scene.fdem.mesh_seed; }
 
-void fast(Scene& scene) { scene.fdem.tier = FdemTier::fast; }
+void fast(Scene& scene) { scene.fdem = defaults_of(FdemTier::fast); }
 
 // Of a scene of the reference tier; the first is the reference.
 constexpr std::array<void (*)(Scene&), 7> changes{leave, half_the_step, tougher, softer, made_up_for, another_mesh, fast};

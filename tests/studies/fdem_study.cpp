@@ -21,8 +21,7 @@ Scene fdem_scene(const Case& one, std::uint64_t seed, FdemTier tier) {
                               static_cast<std::uint64_t>(one.pattern), Method::fdem});
   scene.frame_interval = scene.horizon;
   scene.stop = Stop::drop10;
-  scene.fdem.tier = tier;
-  if (tier == FdemTier::screening) scene.fdem.element_size *= 2.0;
+  scene.fdem = defaults_of(tier);
   return scene;
 }
 
