@@ -68,13 +68,14 @@ double worst_pick(double bump) {
 std::vector<Row> paper_loading(Desk& desk) {
   std::vector<Row> rows;
   int done = 0;
-  for (const char* material : {"shale", "tungsten", "pbx5"}) {
-    desk.progress(material, 0.33 * done++);
-    const studies::FdemRun run = studies::run_fdem(studies::fdem_scene({material, "uniaxial", 1}, 2026, FdemTier::reference));
+  const studies::Case longest{"pbx", "uniaxial", 7};  // of twelve patterns the one whose ledger closes worst
+  for (const studies::Case& which :
+       {studies::Case{"shale", "uniaxial", 1}, studies::Case{"tungsten", "uniaxial", 1}, studies::Case{"pbx5", "uniaxial", 1}, longest}) {
+    desk.progress(which.material, 0.25 * done++);
+    const studies::FdemRun run = studies::run_fdem(studies::fdem_scene(which, 2026, FdemTier::reference));
     if (!run.trouble.empty()) return {compare(run.trouble, "", 1.0, 0.0, 0.0)};
-    rows.push_back(between(fmt::format("{}: energy residual over external work", material), "", {0.0, 1e-2}, run.residual, 0.0,
-                           run.residual <= 1e-3 ? "within 1e-3" : "past 1e-3"));
-    rows.push_back(compare(fmt::format("{}: alarms", material), "", 0.0, static_cast<double>(run.notes.size()), 0.0));
+    rows.push_back(between(fmt::format("{}: energy residual over external work", which.material), "", {0.0, 1e-3}, run.residual, 0.0));
+    rows.push_back(compare(fmt::format("{}: alarms", which.material), "", 0.0, static_cast<double>(run.notes.size()), 0.0));
   }
   rows.push_back(compare("five-step pick on written signals: largest error", "rows", 0.0, worst_pick(0.0), 1e-9));
   rows.push_back(compare("the same with a peak of 1 % of the range before it", "rows", 0.0, worst_pick(0.12), 1e-9));

@@ -19,11 +19,10 @@ inline constexpr std::string_view mesh_size_set_up =
     "Several meshes and patterns of each size are in ACCURACY.md.";
 
 inline constexpr std::string_view paper_loading_set_up =
-    "Sample 1 of three materials between plates in the reference tier (p = 100 E/h, double), to 1.8 times the stress drop: kinetic, "
-    "elastic, "
-    "plastic, fracture, viscous, contact and friction energies against the plates' work at every half microsecond. The five-step pick on "
-    "200 "
-    "piecewise straight signals, each with its answer written into it.";
+    "Sample 1 of shale, tungsten and pbx5 and sample 7 of pbx, whose ledger closes worst of twelve, between plates in the reference tier "
+    "(p = 100 E/h, double), to 1.8 times the stress drop: kinetic, elastic, plastic, fracture, viscous, contact and friction energies "
+    "against the plates' work at every row of the series. The five-step pick on 200 piecewise straight signals, each with its answer "
+    "written into it.";
 
 inline constexpr std::string_view slivers_set_up =
     "Tiny elements injected three ways. 400 pairs of cracks on a 60 mm plate that miss each other by 3 nm to 3 mm, for the mesher to "
