@@ -97,14 +97,16 @@ class DrillFarm {
   std::unique_ptr<LocalDaemon> coordinator_, worker_;
 };
 
-// The act goes wrong in the first attempt and ends well in the second.
+// The act goes wrong in the first attempt and ends well in the second. Only the one that works past its wall clock has to reach it; on a
+// busy machine a leak takes its seconds.
 std::string campaign_of(const Rehearsed& act) {
+  const int wall_clock_s = act.act == "ignore_term" ? 3 : 30;
   return json{{"name", fmt::format("drill-{}", act.act)},
               {"seed", 1},
               {"jobs", json::array({{{"method", "drill"},
                                      {"patterns", {{"orthogonal", "1"}}},
                                      {"set", {{"drill.act", act.act}, {"drill.attempts", 1}, {"drill.seconds", 0.1}}}}})},
-              {"budget", {{"wall_clock", 3}, {"attempts", 3}}}}
+              {"budget", {{"wall_clock", wall_clock_s}, {"attempts", 3}}}}
       .dump();
 }
 

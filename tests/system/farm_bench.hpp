@@ -31,14 +31,14 @@ class Process {
   void signal_group(int number) const;
   bool running();
   // Exit status, or 128 + signal; fails the test where it does not end in time.
-  int wait(double timeout_s = 90.0);
+  int wait(double timeout_s = 200.0);
 
  private:
   pid_t pid_ = -1;
   std::optional<int> status_;
 };
 
-bool wait_until(const std::function<bool()>& holds, double timeout_s = 90.0);
+bool wait_until(const std::function<bool()>& holds, double timeout_s = 200.0);
 void sleep_s(double seconds);
 
 struct Campaign {

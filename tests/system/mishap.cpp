@@ -52,7 +52,7 @@ bool drills_with_a_mishap(int jobs, const Mishap& mishap) {
     (void)ended_well(worker, [&] { return farm.worker({"--slots", "1", "--once"}); });
     return false;
   };
-  REQUIRE(wait_until(served, 120.0));
+  REQUIRE(wait_until(served));
   worker->signal(SIGTERM);  // one that died as it ended was started again, and nobody is there for it
   worker->wait();
   farm.check_all_done(jobs);
