@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -16,6 +17,7 @@ namespace fracfarm::cli {
 namespace {
 
 constexpr double answer_timeout_s = 30.0;
+constexpr double look_interval_s = 0.5;     // for a coordinator that has ended
 constexpr double holder_patience_s = 30.0;  // for another command to let go of the ledger
 
 Result<wire::Client> connect(const std::filesystem::path& farm) {
@@ -24,6 +26,12 @@ Result<wire::Client> connect(const std::filesystem::path& farm) {
   const Result<wire::KeyPair> key = wire::load_or_make_key(farm, "client");
   if (!key) return tl::unexpected(key.error());
   return wire::Client::connect(endpoint->endpoint, farm, *key);
+}
+
+bool writes_nothing(const std::string& verb) {
+  const auto rows = requests();
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const RequestRow& it) { return it.verb == verb; });
+  return row != rows.end() && !row->writes;
 }
 
 }  // namespace
@@ -37,6 +45,7 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
     // The ledger may lie on another machine's local disk: then only the coordinator can answer.
     const bool elsewhere = !std::filesystem::exists(paths.ledger(), none) && std::filesystem::exists(paths.endpoint(), none);
     FarmLink link;
+    link.farm_ = farm;
     if (!elsewhere) {
       Result<Ledger> ledger = Ledger::open(paths, make, 0.0);  // a coordinator will not let go of it: no waiting here
       if (ledger) {
@@ -57,13 +66,38 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
   }
 }
 
+// Once it has ended its ledger is free.
+bool FarmLink::take_over() {
+  Result<Ledger> ledger = Ledger::open(FarmPaths{farm_}, false, 0.0);
+  if (!ledger) return false;
+  own_ = std::make_unique<Own>(Own{std::move(*ledger), {}});
+  client_.reset();
+  return true;
+}
+
+Result<wire::Reply> FarmLink::wait_for_coordinator(const wire::Ask& request) {
+  if (!writes_nothing(request.verb)) return client_->ask(request, answer_timeout_s);
+  if (auto posted = client_->post(request); !posted) return tl::unexpected(posted.error());
+  SystemClock clock;
+  const double last_s = clock.monotonic_s() + answer_timeout_s;
+  while (clock.monotonic_s() < last_s) {
+    Result<std::optional<wire::Reply>> reply = client_->poll(look_interval_s);
+    if (!reply) return tl::unexpected(reply.error());
+    if (*reply) return std::move(**reply);
+    if (take_over()) return fail(Fault::node_lost, "the coordinator has ended");
+  }
+  return fail(Fault::node_lost, fmt::format("no answer from the coordinator within {:.0f} s", answer_timeout_s));
+}
+
 Result<wire::Answer> FarmLink::ask(const std::string& verb, const nlohmann::json& arguments) {
   const wire::Ask request{verb, arguments.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
   if (client_) {
-    const Result<wire::Reply> reply = client_->ask(request, answer_timeout_s);
-    if (!reply) return tl::unexpected(reply.error());
-    if (const auto* answer = std::get_if<wire::Answer>(&*reply)) return *answer;
-    return fail(Fault::node_lost, "the coordinator answered something else than was asked");
+    const Result<wire::Reply> reply = wait_for_coordinator(request);
+    if (!reply && !own_) return tl::unexpected(reply.error());
+    if (reply) {
+      if (const auto* answer = std::get_if<wire::Answer>(&*reply)) return *answer;
+      return fail(Fault::node_lost, "the coordinator answered something else than was asked");
+    }
   }
   SystemClock clock;
   own_->ledger.begin();

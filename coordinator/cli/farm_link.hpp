@@ -18,7 +18,8 @@ class FarmLink {
   // With `make` a farm that is not there is made. Errors: NODE_LOST where there is no farm or its holder does not answer.
   static Result<FarmLink> open(const std::filesystem::path& farm, bool make = false);
 
-  // The answer's body; its exit code beside it. Errors: NODE_LOST where nobody answers.
+  // The answer's body; its exit code beside it. Where the coordinator has ended since, a request that changes nothing is answered from its
+  // ledger. Errors: NODE_LOST where nobody answers.
   Result<wire::Answer> ask(const std::string& verb, const nlohmann::json& arguments);
 
   bool served() const { return client_.has_value(); }  // a coordinator runs
@@ -28,6 +29,10 @@ class FarmLink {
     Ledger ledger;
     CampaignBook book;
   };
+  Result<wire::Reply> wait_for_coordinator(const wire::Ask& request);
+  bool take_over();
+
+  std::filesystem::path farm_;
   std::unique_ptr<Own> own_;
   std::optional<wire::Client> client_;
 };

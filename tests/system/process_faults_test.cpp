@@ -113,3 +113,16 @@ TEST_CASE("an old copy of the ledger beside newer shards is put back without com
   farm.check_all_done(jobs);
   for (const auto& [job, count] : farm.starts()) CHECK(count == 1);
 }
+
+TEST_CASE("a question that a coordinator leaves without an answer, as it ends, is answered from its ledger") {
+  FarmBench farm;
+  submit_drills(farm, 3);
+  Process coordinator = farm.coordinator({});
+  REQUIRE(wait_until([&] { return farm.json({"status"})["serving"].get<bool>(); }));
+  coordinator.signal(SIGSTOP);
+  Process question = farm.start({"status", "--json"});
+  sleep_s(1.0);
+  CHECK(question.running());
+  coordinator.signal(SIGKILL);
+  CHECK(question.wait(20.0) == 0);
+}
