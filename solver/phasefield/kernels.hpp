@@ -107,13 +107,11 @@ struct Kernels {
   bool (*damages)(const View<Real>&, int j, Real bound);
   // previous = 2 psi - previous within [0, 1].
   void (*guess)(const View<Real>&, int j, const Real* psi, Real* previous);
-  // next += omega (z - next) with z the Jacobi image of psi, or z itself where omega is 1. Needs psi of the rows j - 1 to j + 1.
-  void (*sweep)(const View<Real>&, int j, const Real* psi, Real* next, Real omega);
-  // The same as the last sweep of a solve: next is kept at psi of the step before, at which it cannot heal, or above, and at 1 or below.
-  // Returns the largest correction |z - psi| that this leaves.
-  double (*last_sweep)(const View<Real>&, int j, const Real* psi, Real* next, Real omega, const Real* before);
-  // One such sweep of the row in place, with omega 1.
-  double (*settle)(const View<Real>&, int j, Real* psi, const Real* before);
+  // next += omega (z - next) with z the Jacobi image of psi, or z itself where omega is 1. Needs psi of the rows j -
+  // 1 to j + 1. The last sweep of a solve keeps next within [0, 1].
+  double (*sweep)(const View<Real>&, int j, const Real* psi, Real* next, Real omega, bool last);
+  // One sweep of the row in place, with omega 1 and within [0, 1].
+  double (*settle)(const View<Real>&, int j, Real* psi);
   // g of psi, and what the row's quadrants give to the forces of rows j - 1 to j + 1. Needs u of these. `before` is psi one step earlier.
   RowSums (*force)(const View<Real>&, int j, const Real* psi, const Real* before);
   // f of row j, once force() has seen the rows j - 1 to j + 1 (forget() stands for those outside); v += dt f / m. Returns the kinetic

@@ -9,11 +9,12 @@
 namespace fracfarm::phasefield {
 namespace {
 
-// The error of psi is at most radius / (1 - radius) times this, 4e-4 at w_0 = h. What it moves against 1e-9: see ACCURACY.md.
-constexpr double damage_tolerance = 1e-4;
-// Where w_0 is many cells the radius is near 1, and the tolerance is tightened so that psi's error stays below 13 of it, 1.3e-3. Up to
-// w_0 = 1.7 h nothing changes. Corrections in float do not get below the last.
-constexpr double error_bound = 13.0;
+// The last correction of psi may be this, and less where w_0 is more than h: the error of psi is at most radius / (1 - radius) times it and
+// stays below 2.5e-4, because records refuse a psi that heals by 5e-4. What it moves against 1e-9: see ACCURACY.md.
+constexpr double damage_tolerance = 5e-5, damage_error = 2.5e-4;
+// Past w_0 = 2.5 h that would be tighter than 1e-5, which is enough until the radius is near 1: a broad zone healed by the error's bound.
+constexpr double broad_tolerance = 1e-5, broad_error = 6.5e-4;
+// Corrections in float do not get below the last.
 constexpr double least_tolerance = 1e-12, least_tolerance_float = 5e-7;
 // What the sweeps of the whole grid should leave of the guess's error.
 constexpr double sweeps_reduction = 0.5;
@@ -71,7 +72,9 @@ NodeRow<double> node_row(const law::SurfaceLaw<double>& below, const law::Surfac
 
 double tolerance_of(double radius, Precision precision) {
   const double least = precision == Precision::float_ ? least_tolerance_float : least_tolerance;
-  return std::max(least, damage_tolerance * std::min(1.0, error_bound * (1.0 - radius)));
+  const double narrow = std::min(damage_tolerance, damage_error * (1.0 - radius));
+  const double broad = std::min(broad_tolerance, broad_error * (1.0 - radius));
+  return std::max({least, narrow, broad});
 }
 
 double jacobi_radius(const NodeRow<double>& row, const law::SurfaceLaw<double>& below, const law::SurfaceLaw<double>& above, double area) {

@@ -42,7 +42,6 @@ class Sweeps {
         weight_(radius_) {
     const std::size_t at = model.grid.origin();
     fields_ = {state.psi_previous.data() + at, scratch.psi_other.data() + at};
-    before_ = state.psi.data() + at;
   }
 
   // One more sweep over the rows, to be done row by row.
@@ -52,12 +51,8 @@ class Sweeps {
     ++count_;
   }
   void row(const View<Real>& v, std::size_t sweep, int j) {
-    const Real *from = fields_[sweep % 2], omega = omega_[sweep % omega_.size()];
-    Real* to = fields_[1 - sweep % 2];
-    if (sweep == last_)
-      scratch_.change[static_cast<std::size_t>(j)] = kernels_.last_sweep(v, j, from, to, omega, before_);
-    else
-      kernels_.sweep(v, j, from, to, omega);
+    const double change = kernels_.sweep(v, j, fields_[sweep % 2], fields_[1 - sweep % 2], omega_[sweep % omega_.size()], sweep == last_);
+    if (sweep == last_) scratch_.change[static_cast<std::size_t>(j)] = change;
   }
 
   // More sweeps until every row is settled: of the unsettled rows and their neighbours where these are few, else of the whole grid.
@@ -82,7 +77,7 @@ class Sweeps {
     scratch_.change_before = change;
     ++state_.sweeps;
     for (int j = 0; j < v.rows; ++j)
-      if (moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2], before_);
+      if (moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
     stale_ = true;
   }
   void sweep_grid(const View<Real>& v) {
@@ -116,7 +111,6 @@ class Sweeps {
   ChebyshevWeight weight_;
   bool stale_ = false;  // rows were settled since the last sweep of the grid
   std::array<Real*, 2> fields_{};
-  const Real* before_ = nullptr;  // psi of the step before
   std::array<Real, most_damage_sweeps> omega_{};
   std::size_t count_ = 0;
   std::size_t last_ = 0;

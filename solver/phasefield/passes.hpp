@@ -11,9 +11,8 @@ inline constexpr int damage_sweeps_limit = 1000;
 
 // u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then more sweeps of those rows
 // alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their neighbours. The
-// corner-quadrature operator is an M-matrix, so that its solution lies within [0, 1] and nowhere falls as H grows; what the sweeps leave
-// beyond 1 or below psi of the step before is cut. Replaces psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the
-// sweeps limit.
+// corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution; what the sweeps leave beyond is cut. Replaces
+// psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
 template <class Real>
 Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt);
 

@@ -16,8 +16,8 @@ const GridLayout& grid_of(const RunResult& r) { return std::get<GridLayout>(r.la
 bool on_a_mesh(const RunResult& r) { return std::holds_alternative<MeshLayout>(r.layout); }
 
 constexpr double ledger_limit = 0.02;
-constexpr double rounding = 1e-9;  // of sums over a run
-constexpr double healing = 2e-4;   // the damage equation is solved to 1e-5 of its Jacobi image, records keep 2^-13
+constexpr double rounding = 1e-9;   // of sums over a run
+constexpr double healing = 4.5e-4;  // psi is good to 2.5e-4, and records refuse 4 * 2^-13
 constexpr double float_rounding = 1e-7;
 
 std::size_t nodes_of(const Scene& scene) {

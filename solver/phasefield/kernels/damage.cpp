@@ -11,9 +11,9 @@ INLINE void mirror(const View& v, Real* row) {
 
 INLINE Real within_bounds(Real psi) { return smaller(larger(psi, Real(0)), Real(1)); }
 
-// z = (source + sum of c psi_neighbour) / diagonal, the Jacobi image of the equation. The last sweep keeps psi at `least` or above.
+// z = (source + sum of c psi_neighbour) / diagonal, the Jacobi image of the equation.
 template <bool first, bool last>
-INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real omega, const Real* least) {
+INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real omega) {
   const NodeRow c = v.node_rows[j];
   const Index at = row_at(v, j);
   const Real* here = psi + at;
@@ -24,14 +24,9 @@ INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real om
 #pragma omp simd reduction(max : change)
   for (Index i = 0; i < v.columns; ++i) {
     const Real z = inverse[i] * ((source[i] + c.side * (here[i - 1] + here[i + 1])) + (c.south * south[i] + c.north * north[i]));
+    if (last) change = larger(std::abs(z - here[i]), change);
     const Real relaxed = first ? z : out[i] + omega * (z - out[i]);
-    if (last) {
-      const Real low = least[i];
-      change = larger(std::abs(larger(z, low) - here[i]), change);
-      out[i] = smaller(larger(relaxed, low), Real(1));
-    } else {
-      out[i] = relaxed;
-    }
+    out[i] = last ? within_bounds(relaxed) : relaxed;
   }
   mirror(v, out);
   return change;
@@ -47,22 +42,15 @@ void guess(const View& v, int j, const Real* psi, Real* previous) {
   mirror(v, out);
 }
 
-void sweep(const View& v, int j, const Real* psi, Real* next, Real omega) {
-  if (omega == Real(1))
-    sweep_row<true, false>(v, j, psi, next, omega, nullptr);
-  else
-    sweep_row<false, false>(v, j, psi, next, omega, nullptr);
+double sweep(const View& v, int j, const Real* psi, Real* next, Real omega, bool last) {
+  if (omega == Real(1)) return last ? sweep_row<true, true>(v, j, psi, next, omega) : sweep_row<true, false>(v, j, psi, next, omega);
+  return last ? sweep_row<false, true>(v, j, psi, next, omega) : sweep_row<false, false>(v, j, psi, next, omega);
 }
 
-double last_sweep(const View& v, int j, const Real* psi, Real* next, Real omega, const Real* before) {
-  const Real* least = before + row_at(v, j);
-  return omega == Real(1) ? sweep_row<true, true>(v, j, psi, next, omega, least) : sweep_row<false, true>(v, j, psi, next, omega, least);
-}
-
-double settle(const View& v, int j, Real* psi, const Real* before) {
+double settle(const View& v, int j, Real* psi) {
   const Index at = row_at(v, j);
   Real* fresh = scratch_row(v, first_free_row);
-  const Real change = sweep_row<true, true>(v, j, psi, fresh - at, Real(1), before + at);
+  const Real change = sweep_row<true, true>(v, j, psi, fresh - at, Real(1));
   for (Index i = 0; i < v.columns; ++i) psi[at + i] = fresh[i];
   mirror(v, psi + at);
   return change;

@@ -7,9 +7,8 @@ void drift(const View&, int j, Real dt);
 double history(const View&, int j);
 bool damages(const View&, int j, Real bound);
 void guess(const View&, int j, const Real* psi, Real* previous);
-void sweep(const View&, int j, const Real* psi, Real* next, Real omega);
-double last_sweep(const View&, int j, const Real* psi, Real* next, Real omega, const Real* before);
-double settle(const View&, int j, Real* psi, const Real* before);
+double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool last);
+double settle(const View&, int j, Real* psi);
 RowSums force(const View&, int j, const Real* psi, const Real* before);
 double kick(const View&, int j, Real dt);
 void forget(const View&, int j);
@@ -19,7 +18,6 @@ SurfaceSum surface(const View&, int j, const Real* psi);
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
 extern const Kernels<Real> table;
-const Kernels<Real> table{
-    FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, last_sweep, settle, force, kick, forget, surface};
+const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, force, kick, forget, surface};
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS
