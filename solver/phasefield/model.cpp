@@ -12,8 +12,8 @@ namespace {
 // The last correction of psi may be this, and less where w_0 is more than h: the error of psi is at most radius / (1 - radius) times it and
 // stays below 2.5e-4, because records refuse a psi that heals by 5e-4. What it moves against 1e-9: see ACCURACY.md.
 constexpr double damage_tolerance = 5e-5, damage_error = 2.5e-4;
-// In layers a correction says less of the error, psi healed by up to 9e-4; there, and past w_0 = 2.5 h, it is this. Near a radius of 1 a
-// broad zone healed by the error's bound.
+// In layers of several materials a correction says less of the error, psi healed by up to 9e-4; there, and past w_0 = 2.5 h, it is this.
+// Near a radius of 1 a broad zone healed by the error's bound.
 constexpr double broad_tolerance = 1e-5, broad_error = 6.5e-4;
 // Corrections in float do not get below the last.
 constexpr double least_tolerance = 1e-12, least_tolerance_float = 5e-7;
@@ -71,9 +71,16 @@ NodeRow<double> node_row(const law::SurfaceLaw<double>& below, const law::Surfac
   return row;
 }
 
-double tolerance_of(double radius, Precision precision, bool one_material) {
+bool is_of_one_surface(const Scene& scene) {
+  const Material& first = scene.layers.front().material;
+  return std::all_of(scene.layers.begin(), scene.layers.end(), [&](const Layer& layer) {
+    return layer.material.Gc == first.Gc && layer.material.characteristic_width == first.characteristic_width;
+  });
+}
+
+double tolerance_of(double radius, Precision precision, bool one_surface) {
   const double least = precision == Precision::float_ ? least_tolerance_float : least_tolerance;
-  const double narrow = one_material ? std::min(damage_tolerance, damage_error * (1.0 - radius)) : 0.0;
+  const double narrow = one_surface ? std::min(damage_tolerance, damage_error * (1.0 - radius)) : 0.0;
   const double broad = std::min(broad_tolerance, broad_error * (1.0 - radius));
   return std::max({least, narrow, broad});
 }
@@ -163,7 +170,7 @@ Model build_model(const Scene& scene) {
   model.eta = settings.residual_stiffness;
   model.law = row_law(settings.split);
   set_rows(model, scene);
-  model.damage_tolerance = tolerance_of(model.jacobi_radius, settings.precision, scene.layers.size() == 1);
+  model.damage_tolerance = tolerance_of(model.jacobi_radius, settings.precision, is_of_one_surface(scene));
   model.damage_sweeps = sweeps_of(model.jacobi_radius);
   model.boundary = build_boundary(scene, side_nodes(model.grid, [&](int column, int row) { return model.grid.index(column, row); }));
   hold(model);
