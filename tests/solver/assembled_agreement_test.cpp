@@ -32,6 +32,25 @@ Ended after_steps(GridSimulation& run, double dt, int steps) {
   return ended;
 }
 
+struct Apart {
+  double psi = 0.0;
+  int steps = 0;
+};
+
+// Where two runs of one scene are farthest apart, over all nodes and `steps` steps: psi that has crept is overtaken where a crack grows.
+Apart farthest_apart(GridSimulation& a, GridSimulation& b, double dt, int steps) {
+  Apart apart;
+  std::vector<double> psi, other;
+  for (GridSimulation* run : {&a, &b}) REQUIRE(run->start(dt));
+  for (int n = 0; n < steps; ++n) {
+    for (GridSimulation* run : {&a, &b}) REQUIRE(run->step(n, dt));
+    a.copy_damage(psi), b.copy_damage(other);
+    for (std::size_t k = 0; k < psi.size(); ++k)
+      if (const double here = std::abs(psi[k] - other[k]); here > apart.psi) apart = {here, n + 1};
+  }
+  return apart;
+}
+
 bool near(double a, double b, double scale) { return std::abs(a - b) <= same_share * std::abs(scale); }
 
 void check_agreement(const Scene& scene, int steps, double least_damage) {
@@ -116,17 +135,14 @@ TEST_CASE("assembled and row kernels agree on cracks seeded as a row of nodes an
 }
 
 TEST_CASE("over many steps psi stays as near to its solution as its tolerance promises, however wide a crack is") {
-  for (const double width : {1.0, 2.0, 4.0}) {
-    INFO("w_0 is " << width << " cells");
+  for (const double width : {1.0, 2.0, 3.0, 4.0}) {
     Scene scene = cracked("pbx", 40);
     for (const Side side : {Side::top, Side::bottom}) set_load(scene, side, pull(0.2, scene.width));
     scene.layers[0].material.characteristic_width *= width;
     phasefield::PhaseField<double> run(scene, phasefield::chosen_kernels<double>()), exact(scene, phasefield::chosen_kernels<double>());
     exact.model().damage_tolerance = fine;
-    const double dt = 0.9 * run.stable_dt();
-    const Ended a = after_steps(run, dt, 600), b = after_steps(exact, dt, 600);
-    double worst = 0.0;
-    for (std::size_t n = 0; n < a.psi.size(); ++n) worst = std::max(worst, std::abs(a.psi[n] - b.psi[n]));
-    CHECK(worst < 5e-4);
+    const Apart apart = farthest_apart(run, exact, 0.9 * run.stable_dt(), 600);
+    INFO("w_0 is " << width << " cells, after " << apart.steps << " steps");
+    CHECK(apart.psi < 5e-4);
   }
 }
