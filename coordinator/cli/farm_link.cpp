@@ -34,6 +34,14 @@ bool writes_nothing(const std::string& verb) {
   return row != rows.end() && !row->writes;
 }
 
+// The farm's ledger with every campaign in it whole. A coordinator that has it will not let go: no waiting here.
+Result<Ledger> open_ledger(const FarmPaths& paths, bool make) {
+  Result<Ledger> ledger = Ledger::open(paths, make, 0.0);
+  if (!ledger) return ledger;
+  if (Result<void> made = enrol_the_rest(*ledger); !made) return tl::unexpected(made.error());
+  return ledger;
+}
+
 }  // namespace
 
 Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
@@ -47,9 +55,8 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
     FarmLink link;
     link.farm_ = farm;
     if (!elsewhere) {
-      Result<Ledger> ledger = Ledger::open(paths, make, 0.0);  // a coordinator will not let go of it: no waiting here
+      Result<Ledger> ledger = open_ledger(paths, make);
       if (ledger) {
-        if (Result<void> made = enrol_the_rest(*ledger); !made) return tl::unexpected(made.error());
         link.own_ = std::make_unique<Own>(Own{std::move(*ledger), {}});
         return link;
       }
@@ -68,7 +75,7 @@ Result<FarmLink> FarmLink::open(const std::filesystem::path& farm, bool make) {
 
 // Once it has ended its ledger is free.
 bool FarmLink::take_over() {
-  Result<Ledger> ledger = Ledger::open(FarmPaths{farm_}, false, 0.0);
+  Result<Ledger> ledger = open_ledger(FarmPaths{farm_}, false);
   if (!ledger) return false;
   own_ = std::make_unique<Own>(Own{std::move(*ledger), {}});
   client_.reset();

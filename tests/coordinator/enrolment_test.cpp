@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "coordinator/ledger_schema.hpp"
-#include "tests/coordinator/farm_fixture.hpp"
+#include "tests/coordinator/half_made.hpp"
 
 using namespace fracfarm;
 using namespace fracfarm::test;
@@ -159,18 +158,9 @@ TEST_CASE("Patterns outside of others' are found in spans of indices") {
   CHECK(patterns_outside(block, {&other, &block}).empty());
 }
 
-// The jobs of positions 0 and 1 are rows, made one by one and with another's ids before them; that of position 2 was still to come.
 TEST_CASE("A campaign that a release of the first schema left half made is made to its end, and what it had stays as it was") {
   Database database = Database::open({});
-  REQUIRE(migrate(database, migrations().first(1)));
-  database.run("INSERT INTO campaigns VALUES(1, 'half', ?1, ?2, 3, 2, 0, 0.0)", canonical_text(*parse_campaign(campaign_text(3), "test")),
-               build);
-  for (const int position : {0, 1})
-    database.run(
-        "INSERT INTO jobs(id, key, campaign, position, method, material, load, crack_set, sample_id, state) VALUES(?1, randomblob(32), 1, "
-        "?2, "
-        "'phase_field', 'pbx', 'uniaxial', 'orthogonal', ?3, ?4)",
-        7 + position, position, position + 1, position == 0 ? "READY" : "QUARANTINED");
+  REQUIRE(make_half(database));
   Ledger ledger = std::move(Ledger::over(std::move(database)).value());
   REQUIRE(enrol_the_rest(ledger));
   REQUIRE(enrol_the_rest(ledger));  // nothing more

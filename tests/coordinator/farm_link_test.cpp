@@ -1,15 +1,19 @@
 #include "coordinator/cli/farm_link.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "common/base/exit_code.hpp"
+#include "common/wire/endpoint.hpp"
 #include "coordinator/cli/farm_verbs.hpp"
 #include "coordinator/cli/status_text.hpp"
 #include "coordinator/cli/submission.hpp"
 #include "coordinator/cli/verb.hpp"
-#include "tests/coordinator/farm_fixture.hpp"
+#include "tests/coordinator/half_made.hpp"
 #include "tests/wire/temp_farm.hpp"
 
 using namespace fracfarm;
@@ -38,6 +42,25 @@ TEST_CASE("A farm that is not there is not reachable, and looking does not make 
   REQUIRE_FALSE(link);
   CHECK(report_unreachable(link.error(), true) == exit_unreachable);
   CHECK_FALSE(std::filesystem::exists(temp.path / "none"));
+}
+
+// Its coordinator was ended while it made the campaign's jobs: the endpoint is of its earlier start.
+TEST_CASE("A question that an ended coordinator left is answered over every job, also of a campaign that is half made") {
+  TempFarm temp;
+  const FarmPaths paths{temp.path};
+  std::filesystem::create_directories(paths.ledger_folder());
+  std::optional<LedgerLock> coordinator = LedgerLock::take(paths.lock(), 0.0, holder_coordinator).value();
+  {
+    Database database = Database::open(paths.ledger());
+    REQUIRE(test::make_half(database));
+  }
+  REQUIRE(wire::load_or_make_key(temp.path, "server"));
+  REQUIRE(wire::write_endpoint(temp.path, {"tcp://127.0.0.1:9", 1, ::getpid()}));
+  FarmLink link = FarmLink::open(temp.path).value();
+  REQUIRE(link.served());
+  coordinator.reset();
+  CHECK(json::parse(link.ask("jobs", json::object()).value().body)["jobs"].size() == 3);
+  CHECK_FALSE(link.served());
 }
 
 TEST_CASE("Status in words has the counts by material and load, the faults and what to do") {
