@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <vector>
 
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
@@ -129,10 +130,10 @@ std::string plan_text(const json& plan) {
 int run_plan(int argc, char** argv) {
   FarmOptions options;
   std::filesystem::path file;
-  CLI::App app{"What a campaign would run: jobs by class, what is done already, core hours and disk. Changes nothing.", "fracfarm plan"};
-  app.add_option("CAMPAIGN", file, "campaign file, TOML or JSON")->required();
+  Command app{"What a campaign would run: jobs by class, what is done already, core hours and disk. Changes nothing.", "fracfarm plan"};
+  app.add_option("CAMPAIGN", file, "campaign file, TOML or JSON").required();
   add_farm_options(app, options);
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] {
     const Parsed<Campaign> campaign = load_campaign(file);
     if (!campaign) return report_problems(campaign.error(), file.string(), options.json);
@@ -147,11 +148,11 @@ int run_plan(int argc, char** argv) {
 int run_submit(int argc, char** argv) {
   FarmOptions options;
   std::filesystem::path file;
-  CLI::App app{"Puts the jobs of a campaign into the ledger; submitting again changes nothing. fracfarm run also does the work.",
-               "fracfarm submit"};
-  app.add_option("CAMPAIGN", file, "campaign file, TOML or JSON")->required();
+  Command app{"Puts the jobs of a campaign into the ledger; submitting again changes nothing. fracfarm run also does the work.",
+              "fracfarm submit"};
+  app.add_option("CAMPAIGN", file, "campaign file, TOML or JSON").required();
   add_farm_options(app, options);
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] {
     const Parsed<Campaign> campaign = load_campaign(file);
     if (!campaign) return report_problems(campaign.error(), file.string(), options.json);

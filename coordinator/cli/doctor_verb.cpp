@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
@@ -51,11 +52,11 @@ int doctor(const FarmOptions& options) {
 
 int run_doctor(int argc, char** argv) {
   FarmOptions options;
-  CLI::App app{
+  Command app{
       "Looks at this machine: file systems, free space and inodes, clock, keys, limits, the farm. Exit status 1 where something is bad.",
       "fracfarm doctor"};
   add_farm_options(app, options);
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return doctor(options); });
 }
 

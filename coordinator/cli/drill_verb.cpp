@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
@@ -193,16 +194,16 @@ int drill(const DrillOptions& options) {
 
 int run_drill(int argc, char** argv) {
   DrillOptions options;
-  CLI::App app{
+  Command app{
       "Rehearses on this site: a farm of its own, with daemons of its own, where a solver crashes, hangs, leaks, writes bad records and\n"
       "ignores SIGTERM. Each must be seen as the fault that it is, and the job done in the end. About half a minute.\n"
       "Exit status: 0 all as expected, 1 not.",
       "fracfarm drill"};
   app.add_option("--in", options.in, "folder in which the farm is made, and removed again: on the file system to rehearse on")
-      ->capture_default_str();
+      .with_default_shown();
   app.add_flag("--keep", options.keep, "leave the farm's folder, with its logs");
   app.add_flag("--json", options.json, "one JSON object");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   FarmOptions guard;
   guard.json = options.json;
   return guarded(guard, [&] { return drill(options); });

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/atomic_file.hpp"
 #include "common/base/exit_code.hpp"
@@ -69,11 +70,11 @@ int run_extract(int argc, char** argv) {
   FarmOptions options;
   std::vector<std::string> jobs;
   std::filesystem::path folder = ".";
-  CLI::App app{"Copies the records of jobs out of the store as job-ID.h5, each compared with the ledger's digest.", "fracfarm extract"};
+  Command app{"Copies the records of jobs out of the store as job-ID.h5, each compared with the ledger's digest.", "fracfarm extract"};
   add_farm_options(app, options);
-  app.add_option("job", jobs, "ids, or the first characters of keys")->required();
-  app.add_option("-o,--output", folder, "folder to write into")->capture_default_str();
-  if (const auto status = parse(app, argc, argv)) return *status;
+  app.add_option("job", jobs, "ids, or the first characters of keys").required();
+  app.add_option("-o,--output", folder, "folder to write into").with_default_shown();
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return extract(options, jobs, folder); });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
@@ -130,11 +131,11 @@ int failures(const FarmOptions& options, bool explain) {
 int run_failures(int argc, char** argv) {
   FarmOptions options;
   bool explain = false;
-  CLI::App app{"How tries ended badly, by fault and signature; with --explain which parameters stand out among the jobs that failed.",
-               "fracfarm failures"};
+  Command app{"How tries ended badly, by fault and signature; with --explain which parameters stand out among the jobs that failed.",
+              "fracfarm failures"};
   add_farm_options(app, options);
   app.add_flag("--explain", explain, "compare failed with sound jobs: material, load, method, settings, cracks");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return failures(options, explain); });
 }
 

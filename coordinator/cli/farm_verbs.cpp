@@ -23,8 +23,8 @@ Problems problems_of(const nlohmann::json& body) {
 
 }  // namespace
 
-void add_farm_options(CLI::App& app, FarmOptions& options) {
-  app.add_option("--farm", options.farm, "folder of the farm")->capture_default_str();
+void add_farm_options(Command& app, FarmOptions& options) {
+  app.add_option("--farm", options.farm, "folder of the farm").with_default_shown();
   app.add_flag("--json", options.json, "print one JSON object");
 }
 

@@ -1,7 +1,6 @@
 // What the verbs of a farm share: --farm and --json, reaching the farm, printing answers.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -11,6 +10,7 @@
 #include "common/base/result.hpp"
 #include "coordinator/campaign.hpp"
 #include "coordinator/cli/farm_link.hpp"
+#include "coordinator/cli/options.hpp"
 
 namespace fracfarm::cli {
 
@@ -18,7 +18,7 @@ struct FarmOptions {
   std::filesystem::path farm = "farm";
   bool json = false;
 };
-void add_farm_options(CLI::App& app, FarmOptions& options);
+void add_farm_options(Command& app, FarmOptions& options);
 
 // Runs a verb's body; a failing ledger ends here, in words.
 int guarded(const FarmOptions& options, const std::function<int()>& body);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/build_info.hpp"
 #include "common/base/clock.hpp"
@@ -113,33 +114,33 @@ int backup(const FarmOptions& options, const fs::path& file) {
 int run_backup(int argc, char** argv) {
   FarmOptions options;
   fs::path file;
-  CLI::App app{
+  Command app{
       "Copies the ledger as it stands at one moment, also while a coordinator serves it, and checks the copy. On the coordinator's "
       "machine.",
       "fracfarm backup"};
   add_farm_options(app, options);
   app.add_option("FILE", file, "where to; default: a dated file in FARM/backups, of which the latest three are kept");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return backup(options, file); });
 }
 
 int run_restore(int argc, char** argv) {
   FarmOptions options;
   fs::path file;
-  CLI::App app{
+  Command app{
       "Puts a copy of the ledger back and adopts from the shards what was done since it was made. The ledger that was there stays as "
       "ledger.db.before-restore. No coordinator may run.",
       "fracfarm restore"};
   add_farm_options(app, options);
-  app.add_option("FILE", file, "a copy that fracfarm backup made")->required();
-  if (const auto status = parse(app, argc, argv)) return *status;
+  app.add_option("FILE", file, "a copy that fracfarm backup made").required();
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return restore(options, file); });
 }
 
 int run_rebuild(int argc, char** argv) {
   FarmOptions options;
   std::vector<fs::path> campaigns, stores;
-  CLI::App app{
+  Command app{
       "Makes a ledger from the shards alone: every record is checked by every rule and becomes its job's result. With the campaign files "
       "the "
       "jobs that are still to be done are there as well; without, submit them later: nothing is computed twice.",
@@ -147,7 +148,7 @@ int run_rebuild(int argc, char** argv) {
   add_farm_options(app, options);
   app.add_option("CAMPAIGN", campaigns, "campaign files");
   app.add_option("--store", stores, "a folder of shards besides FARM/store and those of the campaigns");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return rebuild(options, campaigns, stores); });
 }
 

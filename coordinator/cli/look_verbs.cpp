@@ -58,10 +58,10 @@ int watch(const FarmOptions& options) {
 int run_status(int argc, char** argv) {
   FarmOptions options;
   bool again = false;
-  CLI::App app{"How a farm stands: counts by state, material and load, rate, time left, faults, workers.", "fracfarm status"};
+  Command app{"How a farm stands: counts by state, material and load, rate, time left, faults, workers.", "fracfarm status"};
   add_farm_options(app, options);
   app.add_flag("--watch", again, "again and again until nothing is left to do");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] {
     if (again) return watch(options);
     return look(options, "status", json::object(), [](const json& status) { return status_text(status, stdout); });
@@ -72,16 +72,16 @@ int run_jobs(int argc, char** argv) {
   FarmOptions options;
   std::string state, material, load, fault, campaign;
   std::int64_t limit = 50, after = 0;
-  CLI::App app{"Jobs as a table: state, verdict, time-to-failure, peak stress.", "fracfarm jobs"};
+  Command app{"Jobs as a table: state, verdict, time-to-failure, peak stress.", "fracfarm jobs"};
   add_farm_options(app, options);
   app.add_option("--state", state, "held, ready, leased, done, retry_wait, quarantined or cancelled");
   app.add_option("--material", material, "of this material");
   app.add_option("--load", load, "uniaxial or biaxial");
   app.add_option("--class", fault, "whose last try ended in this fault, as SOLVER_CRASH");
   app.add_option("--campaign", campaign, "of the campaign of this name");
-  app.add_option("--after", after, "with ids above this")->check(CLI::NonNegativeNumber);
-  app.add_option("--limit", limit, "rows at most")->check(CLI::Range(1, 10000))->capture_default_str();
-  if (const auto status = parse(app, argc, argv)) return *status;
+  app.add_option("--after", after, "with ids above this").not_negative();
+  app.add_option("--limit", limit, "rows at most").in_range(1, 10000).with_default_shown();
+  if (const auto status = app.parse(argc, argv)) return *status;
   json arguments{{"limit", limit}, {"after", after}};
   for (const auto& [name, value] :
        {std::pair{"state", &state}, {"material", &material}, {"load", &load}, {"class", &fault}, {"campaign", &campaign}})
@@ -101,12 +101,12 @@ int run_explain(int argc, char** argv) {
   FarmOptions options;
   std::string job, worker;
   bool scene = false;
-  CLI::App app{"Everything that happened to one job (or: worker NAME), why it is where it is, and what to do.", "fracfarm explain"};
+  Command app{"Everything that happened to one job (or: worker NAME), why it is where it is, and what to do.", "fracfarm explain"};
   add_farm_options(app, options);
-  app.add_option("JOB", job, "id, or the first characters of its key; or the word worker")->required();
+  app.add_option("JOB", job, "id, or the first characters of its key; or the word worker").required();
   app.add_option("NAME", worker, "after the word worker: its name or its node's, as fracfarm status prints them");
   app.add_flag("--scene", scene, "print its scene instead, to solve it by hand: fracfarm solve");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   if (job == "worker" && !worker.empty())
     return guarded(options, [&] {
       return look(options, "worker", {{"worker", worker}}, [](const json& answer) { return worker_text(answer, stdout); });

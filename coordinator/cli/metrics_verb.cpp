@@ -12,13 +12,13 @@ namespace fracfarm::cli {
 
 int run_metrics(int argc, char** argv) {
   FarmOptions options;
-  CLI::App app{
+  Command app{
       "The status as Prometheus text: fracfarm metrics > DIR/fracfarm.prom.new && mv DIR/fracfarm.prom.new DIR/fracfarm.prom, with DIR the "
       "node "
       "exporter's textfile folder.",
       "fracfarm metrics"};
-  app.add_option("--farm", options.farm, "folder of the farm")->capture_default_str();
-  if (const auto status = parse(app, argc, argv)) return *status;
+  app.add_option("--farm", options.farm, "folder of the farm").with_default_shown();
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] {
     Result<FarmLink> link = FarmLink::open(options.farm);
     if (!link) return report_unreachable(link.error(), false);

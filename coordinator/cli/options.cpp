@@ -2,20 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "common/base/exit_code.hpp"
 #include "common/base/terminal.hpp"
 
 namespace fracfarm::cli {
 
-std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+Option Option::required() { return Option(option_->required()); }
+Option Option::with_default_shown() { return Option(option_->capture_default_str()); }
+Option Option::in_range(int least, int most) { return Option(option_->check(CLI::Range(least, most))); }
+Option Option::in_range(double least, double most) { return Option(option_->check(CLI::Range(least, most))); }
+Option Option::positive() { return Option(option_->check(CLI::PositiveNumber)); }
+Option Option::not_negative() { return Option(option_->check(CLI::NonNegativeNumber)); }
+Option Option::checked(std::string (*fault)(const std::string&)) { return Option(option_->check(fault)); }
+Option Option::excludes(Option other) { return Option(option_->excludes(other.option_)); }
+Option Option::repeatable() { return Option(option_->take_all()->allow_extra_args(false)); }
+
+Command::Command(std::string description, std::string name) : app_(std::make_unique<CLI::App>(std::move(description), std::move(name))) {}
+Command::~Command() = default;
+
+template <class Value>
+Option Command::add_option(const std::string& names, Value& value, const std::string& help) {
+  return Option(app_->add_option(names, value, help));
+}
+template Option Command::add_option(const std::string&, std::string&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
+template Option Command::add_option(const std::string&, int&, const std::string&);
+template Option Command::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::add_option(const std::string&, double&, const std::string&);
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& help) {
+  return Option(app_->add_flag(names, value, help));
+}
+
+std::optional<int> Command::parse(int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    app_->parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::ParseError& mistake) {
-    return app.exit(mistake) == 0 ? exit_ok : exit_bad_input;
+    return app_->exit(mistake) == 0 ? exit_ok : exit_bad_input;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/atomic_file.hpp"
 #include "common/base/exit_code.hpp"
@@ -158,18 +159,18 @@ void print_summary(const Record& r, const std::string& path) {
 }  // namespace
 
 int run_check(int argc, char** argv) {
-  CLI::App app(
+  Command app(
       "Is each file a record that may be trusted? Names every broken rule; exit status 1 where there is one, 2 where a file cannot be "
       "read.",
       "fracfarm check");
   std::vector<std::string> paths;
   Expectation expectation;
   bool json = false, every_rule = false;
-  app.add_option("record", paths, "record files")->required();
+  app.add_option("record", paths, "record files").required();
   app.add_option("--key", expectation.key, "the job that the record must be of");
   app.add_flag("--all", every_rule, "print the rules that hold as well");
   app.add_flag("--json", json, "one JSON object");
-  if (const auto ended = parse(app, argc, argv)) return *ended;
+  if (const auto ended = app.parse(argc, argv)) return *ended;
 
   std::vector<CheckedFile> files;
   ProgressLine progress;
@@ -191,13 +192,13 @@ int run_check(int argc, char** argv) {
 }
 
 int run_show(int argc, char** argv) {
-  CLI::App app("What a record holds: a summary in words, or with -o a picture of patterns, stress and energies.", "fracfarm show");
+  Command app("What a record holds: a summary in words, or with -o a picture of patterns, stress and energies.", "fracfarm show");
   std::string path, picture;
   bool json = false;
-  app.add_option("record", path, "record file")->required();
+  app.add_option("record", path, "record file").required();
   app.add_option("-o,--output", picture, "PNG file to write");
   app.add_flag("--json", json, "one JSON object");
-  if (const auto ended = parse(app, argc, argv)) return *ended;
+  if (const auto ended = app.parse(argc, argv)) return *ended;
 
   const Result<std::string> bytes = read_file(path, record_file_limit);
   if (!bytes) return report_error({Fault::bad_request, bytes.error().message}, json);

@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 #include "common/base/atomic_file.hpp"
 #include "common/base/clock.hpp"
@@ -125,10 +126,10 @@ Result<ReportPage> make_page(const std::filesystem::path& farm) {
 int run_report(int argc, char** argv) {
   FarmOptions options;
   std::filesystem::path output = "report.html";
-  CLI::App app{"The campaign as one HTML page that needs nothing else: picture grid, times to failure, tables.", "fracfarm report"};
+  Command app{"The campaign as one HTML page that needs nothing else: picture grid, times to failure, tables.", "fracfarm report"};
   add_farm_options(app, options);
-  app.add_option("-o,--output", output, "the page to write")->capture_default_str();
-  if (const auto status = parse(app, argc, argv)) return *status;
+  app.add_option("-o,--output", output, "the page to write").with_default_shown();
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&]() -> int {
     const Result<ReportPage> page = make_page(options.farm);
     if (!page) return report_unreachable(page.error(), options.json);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
@@ -194,16 +195,16 @@ int run_campaign(const RunOptions& options) {
 int run_run(int argc, char** argv) {
   RunOptions options;
   options.workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  CLI::App app{
+  Command app{
       "Runs a campaign on this machine to its end: submits it, starts a coordinator and workers where none run, waits, ends what it "
       "started.\n"
       "Ctrl-C stops it in order; after that, or after any crash, run it again: it goes on where it was.\n"
       "Exit status: 0 all done, 5 some jobs quarantined, 3 stopped.",
       "fracfarm run"};
-  app.add_option("CAMPAIGN", options.campaign, "campaign file, TOML or JSON")->required();
-  app.add_option("--workers,--slots", options.workers, "jobs solved at once; default: cores")->check(CLI::Range(1, 4096));
+  app.add_option("CAMPAIGN", options.campaign, "campaign file, TOML or JSON").required();
+  app.add_option("--workers,--slots", options.workers, "jobs solved at once; default: cores").in_range(1, 4096);
   add_farm_options(app, options.farm);
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   struct sigaction action {};
   action.sa_handler = on_signal;
   ::sigaction(SIGINT, &action, nullptr);

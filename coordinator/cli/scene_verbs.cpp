@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/atomic_file.hpp"
 #include "common/base/exit_code.hpp"
@@ -42,13 +43,13 @@ std::string not_a_number(const std::string& text, std::uint64_t low) {
   return good ? "" : fmt::format("'{}' is not an integer from {} to {}", text, low, UINT64_MAX);
 }
 
-CLI::Option* add_pattern_options(CLI::App& app, PatternChoice& choice) {
+Option add_pattern_options(Command& app, PatternChoice& choice) {
   app.add_flag("--oblique", choice.oblique, "one set of 6 to 30 cracks, each with its own angle; else horizontal and vertical ones");
-  app.add_option("--seed", choice.seed, "campaign seed of the patterns")->capture_default_str()->check([](const std::string& text) {
+  app.add_option("--seed", choice.seed, "campaign seed of the patterns").with_default_shown().checked([](const std::string& text) {
     return not_a_number(text, 0);
   });
   app.add_flag("--redraw", choice.settings.redraw, "draw cracks that leave the domain again; else the part outside is dropped");
-  return app.add_option("--id", choice.id, "sample id, from 1")->check([](const std::string& text) { return not_a_number(text, 1); });
+  return app.add_option("--id", choice.id, "sample id, from 1").checked([](const std::string& text) { return not_a_number(text, 1); });
 }
 
 json pattern_json(const PatternChoice& choice, const std::vector<Segment>& cracks) {
@@ -159,13 +160,13 @@ int check_scene(const SceneChoice& choice) {
 }  // namespace
 
 int run_pattern(int argc, char** argv) {
-  CLI::App app("Print one random crack pattern (seed paper, eqs 18-22) as a dataset's sample has it.", "fracfarm pattern");
+  Command app("Print one random crack pattern (seed paper, eqs 18-22) as a dataset's sample has it.", "fracfarm pattern");
   PatternChoice choice;
   bool as_json = false, as_csv = false;
-  add_pattern_options(app, choice)->required();
-  auto* json_flag = app.add_flag("--json", as_json, "one JSON object, metres");
-  app.add_flag("--csv", as_csv, "rows x0,z0,x1,z1 in metres")->excludes(json_flag);
-  if (const auto status = parse(app, argc, argv)) return *status;
+  add_pattern_options(app, choice).required();
+  const Option json_flag = app.add_flag("--json", as_json, "one JSON object, metres");
+  app.add_flag("--csv", as_csv, "rows x0,z0,x1,z1 in metres").excludes(json_flag);
+  if (const auto status = app.parse(argc, argv)) return *status;
   const std::vector<Segment> cracks = draw_pattern(choice.set(), choice.seed, choice.id, choice.settings);
   if (as_json)
     fmt::print("{}", pretty_text(pattern_json(choice, cracks)));
@@ -175,18 +176,16 @@ int run_pattern(int argc, char** argv) {
 }
 
 int run_scene(int argc, char** argv) {
-  CLI::App app("Print the scene of one sample as `fracfarm solve` takes it, or check a scene file.", "fracfarm scene");
+  Command app("Print the scene of one sample as `fracfarm solve` takes it, or check a scene file.", "fracfarm scene");
   SceneChoice choice;
   add_pattern_options(app, choice.pattern);
   app.add_option("--material", choice.material, "a name of the material table");
   app.add_option("--load", choice.load, "uniaxial or biaxial");
   app.add_option("--method", choice.method, "phase_field or fdem");
-  app.add_option("--set", choice.set, "a scene key and its value, as phase_field.cfl=0.8; may be given again")
-      ->take_all()
-      ->allow_extra_args(false);
+  app.add_option("--set", choice.set, "a scene key and its value, as phase_field.cfl=0.8; may be given again").repeatable();
   app.add_option("--check", choice.check_file, "check this scene file and print nothing of a sample");
   app.add_flag("--json", choice.as_json, "problems, and what --check found, as one JSON object");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return choice.check_file.empty() ? print_scene(choice) : check_scene(choice);
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include "common/base/clock.hpp"
 #include "common/base/exit_code.hpp"
@@ -144,15 +145,15 @@ int run_verify(int argc, char** argv) {
   FarmOptions options;
   bool digests_only = false, repair = false;
   double sample = 1.0;
-  CLI::App app{
+  Command app{
       "Reads every record of the ledger again: are its bytes there, have they the digest, do they keep every rule? Exit status 1 where one "
       "does not.",
       "fracfarm verify"};
   add_farm_options(app, options);
   app.add_flag("--digests-only", digests_only, "compare digests, do not check the records' content");
-  app.add_option("--sample", sample, "read this share of the records, others every day")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--sample", sample, "read this share of the records, others every day").in_range(0.0, 1.0);
   app.add_flag("--repair", repair, "have damaged records computed again");
-  if (const auto status = parse(app, argc, argv)) return *status;
+  if (const auto status = app.parse(argc, argv)) return *status;
   return guarded(options, [&] { return verify(options, digests_only, sample, repair); });
 }
 
