@@ -92,6 +92,8 @@ void read_fdem(Fields& top, Scene& scene) {
   fields.done();
 }
 
+constexpr double least_default = 9.0;  // p h / C11 where a scene gives none
+
 // Tiers that compensate take the joints' compliance, about sqrt(3) / (p h), out of the triangles': what is left must be well above 0 in
 // every direction, or the body pushes back the wrong way.
 void check_penalty(const Scene& scene, ProblemList& problems) {
@@ -100,8 +102,8 @@ void check_penalty(const Scene& scene, ProblemList& problems) {
     const Elasticity& C = layer.material.elasticity;
     const double mean = 0.5 * (C.C11 + C.C33), stiffest = std::max(2.0 * C.C55, mean + std::hypot(0.5 * (C.C11 - C.C33), C.C13));
     const double least = 2.5 * stiffest / C.C11;
-    if (scene.fdem.penalty.value_or(10.0) < least)
-      problems.add("fdem.penalty", shortest(scene.fdem.penalty.value_or(10.0)),
+    if (scene.fdem.penalty.value_or(least_default) < least)
+      problems.add("fdem.penalty", shortest(scene.fdem.penalty.value_or(least_default)),
                    fmt::format("at least {:.3g} for {} in the tiers that compensate the joints", least, layer.material.name),
                    "or fdem.tier \"reference\"");
   }

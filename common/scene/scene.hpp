@@ -96,8 +96,8 @@ struct PhaseFieldSettings {
   bool operator==(const PhaseFieldSettings&) const = default;
 };
 
-// reference: the paper's letter, p = 100 E / h in double. fast: p = 10 M / h with compensated stiffness in float. screening: fast on a mesh
-// twice as coarse.
+// reference: the paper's letter, p = 100 E / h in double. fast: softer joints between triangles that make up for it, in float. screening:
+// fast on a mesh twice as coarse.
 enum class FdemTier { reference, fast, screening };
 enum class Softening { munjiza, linear };
 
@@ -110,7 +110,7 @@ struct FdemSettings {
   std::string mesh_file;    // a Gmsh .msh file in place of the mesher; empty: none
   std::string mesh_sha256;  // of the file's bytes; a run with another file is refused
   std::optional<Precision> precision;
-  std::optional<double> penalty;  // p h / E (reference) or p h / C11 (fast, screening); the tier's: 100, 10
+  std::optional<double> penalty;  // p h / E (reference) or p h / C11 (fast, screening); the tier's own
   double viscosity = 0.1;         // of 2 h sqrt(E rho)
   double contact_penalty = 1.0;   // of E
   double dt_fraction = 0.7;       // of the mesh's bound; 0.35 in the reference tier where it is not given

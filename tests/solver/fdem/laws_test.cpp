@@ -142,6 +142,27 @@ TEST_CASE("compensated triangles and the joints between them are as soft togethe
   CHECK(whole.xz == Approx(sigma.xz).epsilon(1e-12));
 }
 
+TEST_CASE("viscosity by the damping ratio dissipates in compensated triangles what it did in softer ones under the same stress") {
+  const Stiffness<double> C{3.125738e10, 3.399087e9, 2.248732e10, 6.486048e9};
+  const auto stiffer = compensated(C, 6e-12);
+  CHECK(damping_ratio(C, C) == Approx(1.0).epsilon(1e-14));
+  CHECK(damping_ratio(C, {2.0 * C.C11, 2.0 * C.C13, 2.0 * C.C33, 2.0 * C.C55}) == Approx(4.0).epsilon(1e-14));
+  double softer = 0.0, less_strained = 0.0;  // sums of |e|^2, tensors, over strains of the stiffer ones that are spread evenly
+  const int around = 40, up = 400;
+  for (int i = 0; i < up; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double height = (2.0 * i + 1.0) / up - 1.0, angle = 2.0 * M_PI * j / around, side = std::sqrt(1.0 - height * height);
+      const Strain<double> e{side * std::cos(angle), side * std::sin(angle), std::sqrt(2.0) * height};
+      const auto sigma = stress(stiffer, e);
+      const double determinant = C.C11 * C.C33 - C.C13 * C.C13;
+      const double xx = (C.C33 * sigma.xx - C.C13 * sigma.zz) / determinant, zz = (C.C11 * sigma.zz - C.C13 * sigma.xx) / determinant;
+      const double gamma = sigma.xz / C.C55;
+      softer += xx * xx + zz * zz + 0.5 * gamma * gamma, less_strained += e.xx * e.xx + e.zz * e.zz + 0.5 * e.xz * e.xz;
+    }
+  CHECK(damping_ratio(C, stiffer) == Approx(softer / less_strained).epsilon(1e-4));
+  CHECK(damping_ratio(C, stiffer) > 1.2);
+}
+
 TEST_CASE("the radial return without branches is the one with them") {
   const J2<double> law{3e11, 1.56e11, 7.5e8, 5e9};
   Plastic<double> one{}, other{};

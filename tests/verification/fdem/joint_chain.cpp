@@ -126,6 +126,7 @@ template <class Real>
 double strip_speed(std::string_view name, FdemTier tier, bool shear) {
   FdemSettings settings;
   settings.tier = tier;
+  if (tier == FdemTier::fast) settings.penalty = 9.0;  // joints that never break would have the reference tier's
   constexpr double length = 0.15, height = 0.03;
   fdem::MeshChoice choice;
   choice.width = length, choice.height = height;
@@ -140,8 +141,10 @@ double strip_speed(std::string_view name, FdemTier tier, bool shear) {
 Row strip(std::string_view name, bool shear) {
   const Material& material = *find_material(name);
   const double bulk = std::sqrt((shear ? material.elasticity.C55 : material.elasticity.C11) / material.density);
-  return compare(fmt::format("{}, mesh of the mesher, fast tier: c of {} waves against the bulk", name, shear ? "S" : "P"), "m/s", bulk,
-                 strip_speed<float>(name, FdemTier::fast, shear), 0.005);
+  const double stiff_joints = strip_speed<double>(name, FdemTier::reference, shear);
+  return compare(fmt::format("{}, mesh of the mesher: c of {} waves, fast tier against reference tier", name, shear ? "S" : "P"), "m/s",
+                 stiff_joints, strip_speed<float>(name, FdemTier::fast, shear), 0.005,
+                 fmt::format("{:.4f} of the bulk's", stiff_joints / bulk));
 }
 
 }  // namespace
@@ -152,9 +155,6 @@ std::vector<Row> joint_chain(Desk&) {
   rows.push_back(sleeping());
   for (const bool shear : {false, true})
     for (const std::string_view name : {"shale", "pbx"}) rows.push_back(strip(name, shear));
-  const double bulk = rows[rows.size() - 4].target, reference = strip_speed<double>("shale", FdemTier::reference, false);
-  rows.push_back(
-      report("shale, the same P waves in the reference tier, which is not made up for: c over the bulk's", "1", reference / bulk));
   return rows;
 }
 
