@@ -92,7 +92,7 @@ void read_fdem(Fields& top, Scene& scene) {
   fields.done();
 }
 
-constexpr double least_default = 9.0;  // p h / C11 where a scene gives none
+constexpr double least_default = 8.0;  // p h / C11 where a scene gives none
 
 // Tiers that compensate take the joints' compliance, about sqrt(3) / (p h), out of the triangles': what is left must be well above 0 in
 // every direction, or the body pushes back the wrong way.

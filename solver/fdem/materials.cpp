@@ -24,7 +24,7 @@ double softening_area(const FdemSettings& settings) {
 // The fast tiers', Pa/m. Soft joints weaken a body whose cohesive zone is a few elements short: they are as stiff as it takes for one to
 // open by no more than a small share of its rupture opening before it softens.
 double quick_penalty(const Material& material, const FdemSettings& settings) {
-  constexpr double least = 9.0, most_onset = 0.0075;
+  constexpr double least = 8.0, most_onset = 0.0075;
   const double strength = material.cohesion->tensile_strength, rupture = material.cohesion->GI / (strength * softening_area(settings));
   const double stiff = std::max(least * material.elasticity.C11 / settings.element_size, strength / (most_onset * rupture));
   return std::min(stiff, reference_penalty(material, settings));

@@ -10,7 +10,7 @@ namespace fracfarm::fdem {
 // E of an isotropic material; C33 - C13^2 / C11 of others (Pa).
 double young_of(const Material& material);
 
-// p, Pa/m: 100 E / h in the reference tier; in the others 9 C11 / h, more where the cohesive zone is short beside h, up to that of the
+// p, Pa/m: 100 E / h in the reference tier; in the others 8 C11 / h, more where the cohesive zone is short beside h, up to that of the
 // reference tier; or the factor that the settings give.
 double penalty_of(const Material& material, const FdemSettings& settings);
 

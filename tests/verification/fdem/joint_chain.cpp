@@ -126,7 +126,7 @@ template <class Real>
 double strip_speed(std::string_view name, FdemTier tier, bool shear) {
   FdemSettings settings;
   settings.tier = tier;
-  if (tier == FdemTier::fast) settings.penalty = 9.0;  // joints that never break would have the reference tier's
+  if (tier == FdemTier::fast) settings.penalty = 8.0;  // joints that never break would have the reference tier's
   constexpr double length = 0.15, height = 0.03;
   fdem::MeshChoice choice;
   choice.width = length, choice.height = height;
