@@ -33,6 +33,7 @@ struct Grid {
   int cells_x() const { return columns - 1; }
   int cells_z() const { return rows - 1; }
   int padded_columns() const { return (columns + lanes - 1) / lanes * lanes; }
+  int tiles() const { return padded_columns() / lanes; }   // of a row: groups of `lanes` nodes
   int stride() const { return padded_columns() + lanes; }  // the pad between two rows holds the right ghost of one, the left of the next
   std::size_t origin() const { return static_cast<std::size_t>(stride() + lanes); }  // of node (0, 0) in a field
   std::size_t size() const { return static_cast<std::size_t>(stride()) * static_cast<std::size_t>(rows + 2) + lanes; }

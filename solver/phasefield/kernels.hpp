@@ -11,19 +11,37 @@
 #include <string_view>
 
 #include "solver/law/elastic.hpp"
-#include "solver/law/secant.hpp"
+#include "solver/phasefield/grid.hpp"
 
 namespace fracfarm::phasefield {
 
 // Which law the rows follow; secant plasticity goes with the first two.
 enum class RowLaw { seed, none, spectral, star_convex };
 
+// Moduli for differences of displacements along the edges in place of strains; `shear` goes with one difference in x and one in z.
+template <class Real>
+struct Differenced {
+  Real c11{}, c33{}, c13{}, c55{}, shear{};
+};
+
+// The secant law of a row of elements in differences of displacements. With p = (q / sigma_y)^2, a quadratic form of the strain, and
+// r = sigma_y / q past yield, else 1, yielding takes the share (1 - h) (1 - r) of mu: the drive loses `drive` (1 - r) p of the strain that
+// drives, and the potential `energy` (q / sigma_y - 1)^2, see law::stored_energy. All are 0 where the row does not yield at all.
+template <class Real>
+struct Yielding {
+  Real normal_x{}, normal_z{}, cross{}, shear{};  // of p
+  Real soft{};                                    // 1 - h
+  Real drive{}, energy{};                         // J/m^3
+};
+
 // Constants of one row of elements.
 template <class Real>
 struct ElementRow {
   law::Stiffness<Real> stiffness{};
-  law::Secant<Real> secant{Real(0), Real(0), Real(1), Real(0)};  // mu = 0 where not plastic
   bool plastic = false;
+  Differenced<Real> energy;  // J/m^5: half the stiffness per squared spacing; c13 whole
+  Differenced<Real> force;   // N/m^2: times the corner's area
+  Yielding<Real> yielding;
   Real lambda{}, mu{}, per_dimensions{}, star_convexity{};  // of the splits for isotropic materials, see law/splits.hpp
   Real surface_square{}, surface_linear{};                  // J/m^3, of psi^2 and psi in the surface functional
   Real surface_gradient{};                                  // J/m, of |grad psi|^2
@@ -36,10 +54,12 @@ struct NodeRow {
   Real side{};  // psi equation: of the left and the right neighbour, J/m
   Real south{};
   Real north{};
-  Real diagonal{};   // without the history's part
-  Real weight{};     // m^2, of the sum of H over the quadrants, both in the diagonal and on the right
-  Real threshold{};  // J/m, taken from the right side
-  Real mass{};       // kg/m
+  Real diagonal{};            // without the history's part
+  Real weight{};              // m^2, of the sum of H over the quadrants, both in the diagonal and on the right
+  Real threshold{};           // J/m, taken from the right side
+  Real mass{};                // kg/m
+  bool amid = false;          // the elements below and above are of one kind
+  Real along_x{}, along_z{};  // N/m^2, of the edges along x: stiffness against u_x, u_z
 };
 
 // A traction's force on a node of a row, N/m.
@@ -49,15 +69,26 @@ struct NodeForce {
   Real x{}, z{};
 };
 
+// Neighbouring tiles (groups of `lanes` nodes) of a row: nodes begin to end.
+struct Run {
+  int begin, end;
+};
+
 // Raw pointers to node (0, 0) of each field: what every kernel sees. Strides in numbers.
 template <class Real>
 struct View {
-  int columns, rows, padded, stride;
+  int columns, rows, padded, stride, tiles;
   double hx, hz, corner_area;
   Real eta;
   RowLaw law;
-  bool keeps_forces;                     // all of fx and fz are stored; else only those of the sides
-  bool tests_yield;                      // tiles that may yield are tested; else all of them run the secant law
+  bool keeps_forces;     // all of fx and fz are stored; else only those of the sides
+  bool tests_yield;      // tiles that may yield are tested; else all of them run the secant law
+  const int* run_begin;  // the tiles of row j that are worked on: runs[run_begin[j]] to runs[run_begin[j + 1]]
+  const Run* runs;
+  Real moved_damage, moved_reduction;    // a tile moves whose psi or s changes by more than this in rest_steps steps
+  unsigned char* moves;                  // by tile [j tiles + t], t a group of `lanes` nodes; what it is for: see passes.hpp
+  unsigned char* slips;                  // by tile: s moved by more than that
+  unsigned char* yields;                 // by tile: s was below 1 where it was last worked on
   const ElementRow<Real>* element_rows;  // [j] is below node row j, [j + 1] above it
   const NodeRow<Real>* node_rows;        // [j]
   const Real* column_weight;             // 1 inside, 1/2 at the sides, 0 in the pad
@@ -66,27 +97,33 @@ struct View {
   const int *pin_begin, *pins;  // columns of row j where psi = 1 is held: pins[pin_begin[j]] to pins[pin_begin[j + 1]]
   const int* node_force_begin;  // the same for
   const NodeForce<Real>* node_forces;
-  const Real* whole;                // 0 at pinned nodes and in the pad, else 1
+  const Real* whole_nodes;          // 0 at pinned nodes and in the pad, else 1
   Real *ux, *uz, *vx, *vz;          // m, m/s (half a step ahead)
   Real* history[4];                 // H in the quadrants, J/m^3
-  Real* reduction[4];               // secant factor s in the quadrants, valid in rows that yield
-  unsigned char* row_yields;        // by node row
+  Real* reduction[4];               // secant factor s in the quadrants
   Real *source, *inverse_diagonal;  // of the psi equation
-  Real *stored, *stored_before;     // undegraded energy that damage can release, summed over the quadrants, J/m^3; a step earlier
+  Real *stored, *stored_before;     // undegraded energy that damage can release, summed over the quadrants, J/m^3, when a tile was last
+                                    // worked on, and the time before that
+  Real* degradation;                // g of psi
+  Run* half_edges;                  // by row from -1 to `rows`: whose quadrants gave something to rows around; none outside
   Real *fx, *fz;                    // internal force and tractions, N/m
   Real* scratch;                    // scratch_rows rows of one thread
 };
 inline constexpr int scratch_rows = 40;
+inline constexpr int rest_steps = 4;  // a whole step and the light ones after it
 
-struct StressSum {
-  double xx, zz;  // integral of the degraded stress, N
+// A sum over nodes, in parts: number l of each tile goes to part l.
+struct alignas(64) Parts {
+  double at[lanes]{};
+  double total() const;  // in a fixed order
 };
 
-// What a row of nodes adds to the sums of a step.
-struct RowSums {
-  double released;  // J/m, by the change of g at fixed strain: geometric mean of the energies before and after the step, second order
-  double elastic;   // J/m, stored with the new g, without the kept part
-  StressSum stress;
+// What rows of nodes add up to in a step.
+struct Sums {
+  Parts released;  // J/m, by the change of g at fixed strain: geometric mean of the energies before and after the step, second order
+  Parts elastic;   // J/m, stored with the new g, without the kept part; of the tiles that are worked on
+  Parts stress_xx, stress_zz;  // N, integrals of the degraded stress
+  Parts kinetic;               // J/m, of the mean velocity
 };
 
 struct SurfaceSum {
@@ -101,7 +138,7 @@ struct Kernels {
   // u += dt v.
   void (*drift)(const View<Real>&, int j, Real dt);
   // H = max(H, drive(epsilon)), energies, and the row of the psi equation, whose pins are held; returns the kept energy, J/m. Needs u of
-  // the rows j - 1 to j + 1.
+  // the rows j - 1 to j + 1. Of tiles that are worked on, as all that follows but kick() and surface().
   double (*history)(const View<Real>&, int j);
   // True where psi of the row's equation could rise above that of H = 0 by more than `bound` (pinned nodes apart).
   bool (*damages)(const View<Real>&, int j, Real bound);
@@ -112,13 +149,15 @@ struct Kernels {
   double (*sweep)(const View<Real>&, int j, const Real* psi, Real* next, Real omega, bool last);
   // One sweep of the row in place, with omega 1 and within [0, 1].
   double (*settle)(const View<Real>&, int j, Real* psi);
-  // g of psi, and what the row's quadrants give to the forces of rows j - 1 to j + 1. Needs u of these. `before` is psi one step earlier.
-  RowSums (*force)(const View<Real>&, int j, const Real* psi, const Real* before);
-  // f of row j, once force() has seen the rows j - 1 to j + 1 (forget() stands for those outside); v += dt f / m. Returns the kinetic
-  // energy of the mean velocity, J/m.
-  double (*kick)(const View<Real>&, int j, Real dt);
-  // The quadrants of a row outside the grid give nothing.
-  void (*forget)(const View<Real>&, int j);
+  // Which tiles of the row move, judged by the last step, which was whole. Psi of those that rest is put into all three fields.
+  void (*rest)(const View<Real>&, int j, const Real* psi, Real* previous, Real* other);
+  // Energy that the row stores with the g that it has, J/m, with the seed's law: of tiles that rest, too.
+  double (*elastic_energy)(const View<Real>&, int j);
+  // g of psi, and what the row's quadrants give to the forces of rows j - 1 to j + 1 beyond linear elasticity. Needs u of these. `before`
+  // is psi one step earlier.
+  void (*force)(const View<Real>&, int j, const Real* psi, const Real* before, Sums&);
+  // f of row j, once force() has seen the rows j - 1 to j + 1; v += dt f / m. Needs u of these rows.
+  void (*kick)(const View<Real>&, int j, Real dt, Sums&);
   // Surface functional of element row j.
   SurfaceSum (*surface)(const View<Real>&, int j, const Real* psi);
 };

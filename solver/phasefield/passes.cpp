@@ -26,6 +26,11 @@ class ChebyshevWeight {
   bool first_ = true;
 };
 
+template <class Real>
+bool is_worked_on(const View<Real>& v, int j) {
+  return v.run_begin[j] < v.run_begin[j + 1];
+}
+
 constexpr int local_rounds = 32;  // of unsettled rows alone; what takes longer is left to Chebyshev
 
 // The sweeps of one solve: they go to and fro between the guess, which stands in psi_previous, and another field.
@@ -77,13 +82,14 @@ class Sweeps {
     scratch_.change_before = change;
     ++state_.sweeps;
     for (int j = 0; j < v.rows; ++j)
-      if (moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
+      if (is_worked_on(v, j) && moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
     stale_ = true;
   }
   void sweep_grid(const View<Real>& v) {
     if (std::exchange(stale_, false)) weight_ = ChebyshevWeight(radius_);  // a new iteration: its first sweep needs one field only
     begin(true);
-    for (int j = 0; j < v.rows; ++j) row(v, count_ - 1, j);
+    for (int j = 0; j < v.rows; ++j)
+      if (is_worked_on(v, j)) row(v, count_ - 1, j);
   }
   bool moved_near(int j, int rows) const {
     const double* change = scratch_.change_before.data() + j;
@@ -141,23 +147,39 @@ Result<void> move_and_sweep(const Model& model, State<Real>& state, Scratch<Real
   for (int k = 0; k < count; ++k) sweeps.begin(k + 1 == count);
   scratch.kept = 0.0;
   for (int front = 0; front < v.rows + count; ++front) {
-    if (front < v.rows) {
-      kernels.drift(v, front, dt);
-      kernels.guess(v, front, psi, previous);
-    }
-    if (front >= 1 && front <= v.rows) scratch.kept += kernels.history(v, front - 1);
+    const auto is_due = [&](int j) { return j >= 0 && j < v.rows && is_worked_on(v, j); };
+    if (front < v.rows) kernels.drift(v, front, dt);
+    if (is_due(front)) kernels.guess(v, front, psi, previous);
+    if (is_due(front - 1)) scratch.kept += kernels.history(v, front - 1);
     for (int k = 0; k < count; ++k)
-      if (const int j = front - 1 - k; j >= 0 && j < v.rows) sweeps.row(v, static_cast<std::size_t>(k), j);
+      if (is_due(front - 1 - k)) sweeps.row(v, static_cast<std::size_t>(k), front - 1 - k);
   }
   return sweeps.settle(v);
+}
+
+// Laws that keep a part of the energy are worked on everywhere.
+bool may_rest(const Model& model) { return model.rules.work_where_it_moves && (model.law == RowLaw::seed || model.law == RowLaw::none); }
+
+// Tiles that hardly move are left as they are until the next whole step.
+template <class Real>
+void rest(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  const std::size_t at = model.grid.origin();
+  for (int j = 0; j < v.rows; ++j) kernels.rest(v, j, state.psi.data() + at, state.psi_previous.data() + at, scratch.psi_other.data() + at);
+  find_moving(model.grid, state, scratch);
+  std::fill(scratch.change.begin(), scratch.change.end(), 0.0);
 }
 
 }  // namespace
 
 template <class Real>
-Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt) {
-  std::swap(scratch.stored, scratch.stored_before);
+Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n,
+                             double dt) {
   const Real step = static_cast<Real>(dt);
+  if (state.damages && may_rest(model)) {
+    const bool was_whole = std::exchange(state.whole, (n + 1) % rest_steps == 0);
+    if (was_whole && !state.whole) rest(model, state, scratch, kernels);
+  }
   if (state.damages || !model.rules.linear_until_damage) return move_and_sweep(model, state, scratch, kernels, step);
   state.damages = move(view(model, state, scratch), scratch, kernels, step);
   return state.damages ? solve_damage(model, state, scratch, kernels) : Result<void>{};
@@ -185,22 +207,21 @@ StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch,
   const View<Real> v = view(model, state, scratch);
   const std::size_t at = model.grid.origin();
   const Real *psi = state.psi.data() + at, *before = state.psi_previous.data() + at, step = static_cast<Real>(dt);
-  StepSums sums;
-  sums.elastic = scratch.kept;
-  scratch.released = 0.0;
-  kernels.forget(v, -1);
+  Sums sums;
   for (int front = 0; front <= v.rows; ++front) {
-    if (front < v.rows) {
-      const RowSums row = kernels.force(v, front, psi, before);
-      scratch.released += row.released;
-      sums.elastic += row.elastic;
-      sums.stress.xx += row.stress.xx, sums.stress.zz += row.stress.zz;
-    } else {
-      kernels.forget(v, front);
-    }
-    if (front > 0) sums.kinetic += kernels.kick(v, front - 1, step);
+    if (front < v.rows) kernels.force(v, front, psi, before, sums);
+    if (front > 0) kernels.kick(v, front - 1, step, sums);
   }
-  return sums;
+  scratch.released = sums.released.total();
+  return {{sums.stress_xx.total(), sums.stress_zz.total()}, scratch.kept + sums.elastic.total(), sums.kinetic.total()};
+}
+
+template <class Real>
+double elastic_energy(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  double energy = 0.0;
+  for (int j = 0; j < v.rows; ++j) energy += kernels.elastic_energy(v, j);
+  return energy;
 }
 
 template <class Real>
@@ -214,11 +235,12 @@ SurfaceSum surface(const Model& model, State<Real>& state, Scratch<Real>& scratc
   return sum;
 }
 
-#define FRACFARM_INSTANTIATE(Real)                                                                                 \
-  template Result<void> move_and_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double); \
-  template void strain(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                          \
-  template Result<void> solve_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);            \
-  template StepSums respond(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double);             \
+#define FRACFARM_INSTANTIATE(Real)                                                                                            \
+  template Result<void> move_and_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, long long, double); \
+  template void strain(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                                     \
+  template Result<void> solve_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                       \
+  template StepSums respond(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double);                        \
+  template double elastic_energy(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                           \
   template SurfaceSum surface(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);
 FRACFARM_INSTANTIATE(double)
 FRACFARM_INSTANTIATE(float)

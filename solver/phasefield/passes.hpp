@@ -9,12 +9,17 @@ namespace fracfarm::phasefield {
 
 inline constexpr int damage_sweeps_limit = 1000;
 
-// u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then more sweeps of those rows
-// alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their neighbours. The
-// corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution; what the sweeps leave beyond is cut. Replaces
-// psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
+// Where nothing much happens less is done: once psi may rise, three of four steps are light, and only the fourth is whole. A light step
+// works on H, s, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone whose psi or secant factor s moved by more than the
+// model's moved_damage and moved_reduction in four steps; the others rest: they keep theirs. All nodes move and feel forces in every step.
+
+// The step from n to n + 1: u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then
+// more sweeps of those rows alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their
+// neighbours. The corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution; what the sweeps leave beyond is
+// cut. Replaces psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
 template <class Real>
-Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt);
+Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n,
+                             double dt);
 
 // Energies and the psi equation of u as it is.
 template <class Real>
@@ -27,6 +32,10 @@ Result<void> solve_damage(const Model& model, State<Real>& state, Scratch<Real>&
 // Degradation, forces with the new psi, v += dt f / m; returns the sums, and leaves scratch.released.
 template <class Real>
 StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, double dt);
+
+// Energy stored at u with the g of the last step, without what a split keeps. J/m.
+template <class Real>
+double elastic_energy(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
 
 // Surface functional of psi.
 template <class Real>

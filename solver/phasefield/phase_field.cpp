@@ -106,7 +106,7 @@ SampleRow PhaseField<Real>::sample(long long n, double dt) const {
   s.stress_zz = state_.sums.stress.zz / area();
   s.reaction = reactions(model_, scratch_);
   s.kinetic_energy = state_.sums.kinetic;
-  s.elastic_energy = state_.sums.elastic;
+  s.elastic_energy = state_.whole ? state_.sums.elastic : phasefield::elastic_energy(model_, state_, scratch_, kernels_);
   s.released_energy = state_.released;
   s.surface_energy = surface.local + surface.gradient - state_.initial_surface;
   s.external_work = state_.external_work;
@@ -158,9 +158,13 @@ void PhaseField<Real>::save(ArchiveWriter& archive) const {
   for (const Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
     archive.put_array(*field);
   for (const Field<Real>& field : state_.history) archive.put_array(field);
+  for (const Field<Real>& field : state_.reduction) archive.put_array(field);
+  archive.put_array(state_.stored);
+  for (const std::vector<unsigned char>* flags : {&state_.moves, &state_.slips, &state_.yields}) archive.put_array(*flags);
   for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
   archive.put(state_.sums);
   archive.put(state_.damages);
+  archive.put(state_.whole);
   archive.put(state_.sweeps);
 }
 
@@ -169,10 +173,14 @@ bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
   for (Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
     archive.get_array_like(*field);
   for (Field<Real>& field : state_.history) archive.get_array_like(field);
+  for (Field<Real>& field : state_.reduction) archive.get_array_like(field);
+  archive.get_array_like(state_.stored);
+  for (std::vector<unsigned char>* flags : {&state_.moves, &state_.slips, &state_.yields}) archive.get_array_like(*flags);
   for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})
     *value = archive.get<double>();
   state_.sums = archive.get<StepSums>();
   state_.damages = archive.get<bool>();
+  state_.whole = archive.get<bool>();
   state_.sweeps = archive.get<long long>();
   if (archive.failed()) return false;
   refresh(model_, state_, scratch_, kernels_, n, dt);

@@ -6,13 +6,26 @@ namespace fracfarm::phasefield {
 namespace {
 
 template <class Real>
+Differenced<Real> converted(const Differenced<double>& d) {
+  const auto to = [](double value) { return static_cast<Real>(value); };
+  return {to(d.c11), to(d.c33), to(d.c13), to(d.c55), to(d.shear)};
+}
+
+template <class Real>
+Yielding<Real> converted(const Yielding<double>& y) {
+  const auto to = [](double value) { return static_cast<Real>(value); };
+  return {to(y.normal_x), to(y.normal_z), to(y.cross), to(y.shear), to(y.soft), to(y.drive), to(y.energy)};
+}
+
+template <class Real>
 ElementRow<Real> converted(const ElementRow<double>& row) {
   const auto to = [](double value) { return static_cast<Real>(value); };
   const law::Stiffness<double>& C = row.stiffness;
-  const law::Secant<double>& s = row.secant;
   return {{to(C.C11), to(C.C13), to(C.C33), to(C.C55)},
-          {to(s.bulk), to(s.mu), to(s.yield), to(s.hardening_share)},
           row.plastic,
+          converted<Real>(row.energy),
+          converted<Real>(row.force),
+          converted<Real>(row.yielding),
           to(row.lambda),
           to(row.mu),
           to(row.per_dimensions),
@@ -26,7 +39,8 @@ ElementRow<Real> converted(const ElementRow<double>& row) {
 template <class Real>
 NodeRow<Real> converted(const NodeRow<double>& row) {
   const auto to = [](double value) { return static_cast<Real>(value); };
-  return {to(row.side), to(row.south), to(row.north), to(row.diagonal), to(row.weight), to(row.threshold), to(row.mass)};
+  return {to(row.side),      to(row.south), to(row.north), to(row.diagonal), to(row.weight),
+          to(row.threshold), to(row.mass),  row.amid,      to(row.along_x),  to(row.along_z)};
 }
 
 // Pointers to column 0 of each row of a field of inverse masses; rows that are equal share one copy, which then stays in the cache.
@@ -68,6 +82,8 @@ Tables<Real> make_tables(const Model& model) {
   tables.column_weight.front() = tables.column_weight[static_cast<std::size_t>(grid.columns - 1)] = Real(0.5);
   tables.inverse_mass_x = shared_rows(grid, model.inverse_mass_x, tables.inverse_masses);
   tables.inverse_mass_z = shared_rows(grid, model.inverse_mass_z, tables.inverse_masses);
+  for (int j = 0; j <= grid.rows; ++j) tables.whole_rows.begin.push_back(j);
+  tables.whole_rows.runs.assign(static_cast<std::size_t>(grid.rows), Run{0, grid.padded_columns()});
   std::vector<std::size_t> pinned = model.pinned, pulled;
   std::sort(pinned.begin(), pinned.end());
   tables.pin_begin = row_begins(grid, pinned);
@@ -86,6 +102,13 @@ Tables<Real> make_tables(const Model& model) {
 
 }  // namespace
 
+double Parts::total() const {
+  double eight[8], four[4];
+  for (int l = 0; l < 8; ++l) eight[l] = at[l] + at[l + 8];
+  for (int l = 0; l < 4; ++l) four[l] = eight[l] + eight[l + 4];
+  return (four[0] + four[2]) + (four[1] + four[3]);
+}
+
 template <class Real>
 State<Real> make_state(const Model& model) {
   const Grid& grid = model.grid;
@@ -93,6 +116,10 @@ State<Real> make_state(const Model& model) {
   State<Real> state;
   for (Field<Real>* field : {&state.ux, &state.uz, &state.vx, &state.vz, &state.psi, &state.psi_previous}) *field = zero;
   state.history.fill(zero);
+  state.reduction.fill(grid.field<Real>(Real(1)));
+  state.stored = zero;
+  const std::size_t tiles = static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.tiles());
+  state.moves.assign(tiles, 1), state.slips.assign(tiles, 0), state.yields.assign(tiles, 0);
   for (const std::size_t n : model.pinned) state.psi[n] = state.psi_previous[n] = Real(1);
   for (int j = 0; j < grid.cells_z() && !model.first_history.empty(); ++j)
     for (int i = 0; i < grid.cells_x(); ++i) {
@@ -107,11 +134,10 @@ Scratch<Real> make_scratch(const Model& model) {
   const Field<Real> zero = model.grid.field<Real>();
   Scratch<Real> scratch;
   scratch.tables = make_tables<Real>(model);
-  for (Field<Real>* field :
-       {&scratch.source, &scratch.inverse_diagonal, &scratch.stored, &scratch.stored_before, &scratch.fx, &scratch.fz, &scratch.psi_other})
+  for (Field<Real>* field : {&scratch.source, &scratch.inverse_diagonal, &scratch.stored_before, &scratch.degradation, &scratch.fx,
+                             &scratch.fz, &scratch.psi_other})
     *field = zero;
-  scratch.reduction.fill(zero);
-  scratch.row_yields.assign(static_cast<std::size_t>(model.grid.rows), 0);
+  scratch.half_edges.assign(static_cast<std::size_t>(model.grid.rows) + 2, Run{0, 0});
   scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
   scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
   std::size_t held = 0;
@@ -121,26 +147,50 @@ Scratch<Real> make_scratch(const Model& model) {
 }
 
 template <class Real>
+void find_moving(const Grid& grid, State<Real>& state, Scratch<Real>& scratch) {
+  RunList& list = scratch.moving;
+  list.begin.assign(1, 0), list.runs.clear();
+  for (int j = 0; j < grid.rows; ++j) {
+    unsigned char* moves = state.moves.data() + static_cast<std::ptrdiff_t>(j) * grid.tiles();
+    for (int t = 0; t < grid.tiles(); ++t) {
+      if (!moves[t]) continue;
+      const bool first = static_cast<int>(list.runs.size()) == list.begin.back();
+      if (first || t * lanes > list.runs.back().end + lanes)
+        list.runs.push_back({t * lanes, (t + 1) * lanes});
+      else
+        moves[t - 1] = 1, list.runs.back().end = (t + 1) * lanes;
+    }
+    list.begin.push_back(static_cast<int>(list.runs.size()));
+  }
+}
+
+template <class Real>
 View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) {
   const Grid& grid = model.grid;
   const Tables<Real>& tables = scratch.tables;
   const std::size_t at = grid.origin();
   View<Real> v{};
-  v.columns = grid.columns, v.rows = grid.rows, v.padded = grid.padded_columns(), v.stride = grid.stride();
+  v.columns = grid.columns, v.rows = grid.rows, v.padded = grid.padded_columns(), v.stride = grid.stride(), v.tiles = grid.tiles();
   v.hx = grid.hx, v.hz = grid.hz, v.corner_area = grid.corner_area(), v.eta = static_cast<Real>(model.eta);
   v.law = model.law, v.keeps_forces = model.keeps_forces;
   v.tests_yield = model.rules.plastic_where_it_yields;
+  const RunList& work = state.whole ? tables.whole_rows : scratch.moving;
+  v.run_begin = work.begin.data(), v.runs = work.runs.data();
+  v.moved_damage = static_cast<Real>(model.moved_damage), v.moved_reduction = static_cast<Real>(model.moved_reduction);
+  v.moves = state.moves.data();
+  v.slips = state.slips.data(), v.yields = state.yields.data();
   v.element_rows = tables.element_rows.data(), v.node_rows = tables.node_rows.data();
   v.column_weight = tables.column_weight.data();
-  v.whole = tables.whole.data() + at;
+  v.whole_nodes = tables.whole.data() + at;
   v.inverse_mass_x = tables.inverse_mass_x.data(), v.inverse_mass_z = tables.inverse_mass_z.data();
   v.pin_begin = tables.pin_begin.data(), v.pins = tables.pins.data();
   v.node_force_begin = tables.node_force_begin.data(), v.node_forces = tables.node_forces.data();
   v.ux = state.ux.data() + at, v.uz = state.uz.data() + at, v.vx = state.vx.data() + at, v.vz = state.vz.data() + at;
-  for (std::size_t k = 0; k < 4; ++k) v.history[k] = state.history[k].data() + at, v.reduction[k] = scratch.reduction[k].data() + at;
-  v.row_yields = scratch.row_yields.data();
+  for (std::size_t k = 0; k < 4; ++k) v.history[k] = state.history[k].data() + at, v.reduction[k] = state.reduction[k].data() + at;
   v.source = scratch.source.data() + at, v.inverse_diagonal = scratch.inverse_diagonal.data() + at;
-  v.stored = scratch.stored.data() + at, v.stored_before = scratch.stored_before.data() + at;
+  v.stored = state.stored.data() + at, v.stored_before = scratch.stored_before.data() + at;
+  v.degradation = scratch.degradation.data() + at;
+  v.half_edges = scratch.half_edges.data() + 1;
   v.fx = scratch.fx.data() + at, v.fz = scratch.fz.data() + at;
   v.scratch = scratch.rows.data() + lanes;
   return v;
@@ -171,6 +221,7 @@ Real history_at(const Grid& grid, const State<Real>& state, int column, int row,
 #define FRACFARM_INSTANTIATE(Real)                                               \
   template State<Real> make_state(const Model&);                                 \
   template Scratch<Real> make_scratch(const Model&);                             \
+  template void find_moving(const Grid&, State<Real>&, Scratch<Real>&);          \
   template View<Real> view(const Model&, State<Real>&, Scratch<Real>&);          \
   template NodeForce<Real>& node_force(const Grid&, Tables<Real>&, std::size_t); \
   template void set_history(const Grid&, State<Real>&, int, int, int, Real);     \

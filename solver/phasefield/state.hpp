@@ -11,6 +11,10 @@
 
 namespace fracfarm::phasefield {
 
+struct StressSum {
+  double xx, zz;  // integral of the degraded stress, N
+};
+
 // Sums over the body after a step.
 struct StepSums {
   StressSum stress{};    // N
@@ -20,10 +24,14 @@ struct StepSums {
 
 template <class Real>
 struct State {
-  Field<Real> ux, uz;                  // m
-  Field<Real> vx, vz;                  // m/s, half a step ahead of the displacements
-  std::array<Field<Real>, 4> history;  // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
-  Field<Real> psi, psi_previous;       // of this step and the one before (its extrapolation starts the next solve)
+  Field<Real> ux, uz;                               // m
+  Field<Real> vx, vz;                               // m/s, half a step ahead of the displacements
+  std::array<Field<Real>, 4> history;               // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
+  Field<Real> psi, psi_previous;                    // of this step and the one before (its extrapolation starts the next solve)
+  std::array<Field<Real>, 4> reduction;             // secant factor s in the quadrants
+  Field<Real> stored;                               // see View
+  std::vector<unsigned char> moves, slips, yields;  // by tile, see View
+  bool whole = true;                                // the last step worked on all tiles
   StepSums sums;
   bool damages = false;          // psi could have risen since t = 0
   double external_work = 0.0;    // J/m since t = 0
@@ -36,11 +44,18 @@ struct State {
 enum class Stage { drive, damage, force, ledger };
 inline constexpr std::array<const char*, 4> stage_names{"drive", "damage", "force", "ledger"};
 
+// Runs of tiles by row of nodes.
+struct RunList {
+  std::vector<int> begin;
+  std::vector<Run> runs;
+};
+
 // The model's constants as the kernels want them.
 template <class Real>
 struct Tables {
   std::vector<ElementRow<Real>> element_rows;
   std::vector<NodeRow<Real>> node_rows;
+  RunList whole_rows;
   Field<Real> column_weight, whole;
   std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
   std::vector<const Real*> inverse_mass_x, inverse_mass_z;
@@ -51,9 +66,9 @@ struct Tables {
 template <class Real>
 struct Scratch {
   Tables<Real> tables;
-  std::array<Field<Real>, 4> reduction;
-  std::vector<unsigned char> row_yields;
-  Field<Real> source, inverse_diagonal, stored, stored_before, fx, fz, psi_other;
+  std::vector<Run> half_edges;  // see View; from row -1 on
+  RunList moving;               // tiles that light steps work on
+  Field<Real> source, inverse_diagonal, stored_before, degradation, fx, fz, psi_other;
   Field<Real> rows;                           // scratch_rows rows for the kernels
   std::vector<double> held_force;             // force on held nodes before the step, in the order of the motions
   std::vector<double> change, change_before;  // by row: correction of its last sweep
@@ -66,6 +81,10 @@ template <class Real>
 State<Real> make_state(const Model& model);
 template <class Real>
 Scratch<Real> make_scratch(const Model& model);
+
+// The runs of the tiles that move, from their flags. A tile between two runs joins them and moves, too.
+template <class Real>
+void find_moving(const Grid& grid, State<Real>& state, Scratch<Real>& scratch);
 
 // The kernels' view of all fields.
 template <class Real>

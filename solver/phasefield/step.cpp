@@ -1,5 +1,7 @@
 #include "solver/phasefield/step.hpp"
 
+#include <utility>
+
 #include "solver/phasefield/passes.hpp"
 
 namespace fracfarm::phasefield {
@@ -117,7 +119,7 @@ Result<void> step(const Model& model, State<Real>& state, Scratch<Real>& scratch
   remember_held_forces(model, scratch);
   state.external_work += drive(model, state, now + 0.5 * dt) + work_of_tractions(model, state, now, next, dt);
   clock.end(Stage::drive);
-  if (auto damaged = move_and_damage(model, state, scratch, kernels, dt); !damaged) return damaged;
+  if (auto damaged = move_and_damage(model, state, scratch, kernels, n, dt); !damaged) return damaged;
   clock.end(Stage::damage);
   pull(model, scratch, next);
   state.sums = respond(model, state, scratch, kernels, dt);
@@ -130,9 +132,12 @@ Result<void> step(const Model& model, State<Real>& state, Scratch<Real>& scratch
 
 template <class Real>
 void refresh(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n, double dt) {
-  strain(model, state, scratch, kernels);
+  find_moving(model.grid, state, scratch);
+  scratch.psi_other = state.psi;  // of tiles that rest
   pull(model, scratch, static_cast<double>(n) * dt);
+  const bool whole = std::exchange(state.whole, true);  // g of all nodes
   respond(model, state, scratch, kernels, 0.0);
+  state.whole = whole;
 }
 
 #define FRACFARM_INSTANTIATE(Real)                                                                                       \

@@ -90,8 +90,16 @@ constexpr KernelRow<Real> kernel_rows[] = {
     {"guess", [](Rows<Real>& r, int j) { r.kernels.guess(r.view, j, r.in(), r.out()); }},
     {"sweep", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.sweep(r.view, j, r.in(), r.out(), Real(1.1), false)); }},
     {"settle", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.settle(r.view, j, r.out())); }},
-    {"force", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.force(r.view, j, r.in(), r.in())); }},
-    {"kick", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.kick(r.view, j, Real(0))); }},
+    {"force",
+     [](Rows<Real>& r, int j) {
+       Sums s;
+       r.kernels.force(r.view, j, r.in(), r.in(), s);
+     }},
+    {"kick",
+     [](Rows<Real>& r, int j) {
+       Sums s;
+       r.kernels.kick(r.view, j, Real(0), s);
+     }},
     {"surface", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.surface(r.view, std::min(j, r.view.rows - 2), r.in())); }},
 };
 

@@ -56,6 +56,7 @@ bool near(double a, double b, double scale) { return std::abs(a - b) <= same_sha
 void check_agreement(const Scene& scene, int steps, double least_damage) {
   phasefield::PhaseField<double> rows(scene, phasefield::chosen_kernels<double>());
   rows.model().damage_tolerance = fine;
+  rows.model().rules.work_where_it_moves = false;
   Assembled assembled(scene);
   REQUIRE(rows.kernel() != assembled.kernel());
   CHECK(rows.stable_dt() == Approx(assembled.stable_dt()).epsilon(1e-14));
@@ -134,15 +135,18 @@ TEST_CASE("assembled and row kernels agree on cracks seeded as a row of nodes an
     }
 }
 
-TEST_CASE("over many steps psi stays as near to its solution as its tolerance promises, however wide a crack is") {
-  for (const double width : {1.0, 2.0, 3.0, 4.0}) {
-    Scene scene = cracked("pbx", 40);
-    for (const Side side : {Side::top, Side::bottom}) set_load(scene, side, pull(0.2, scene.width));
-    scene.layers[0].material.characteristic_width *= width;
-    phasefield::PhaseField<double> run(scene, phasefield::chosen_kernels<double>()), exact(scene, phasefield::chosen_kernels<double>());
-    exact.model().damage_tolerance = fine;
-    const Apart apart = farthest_apart(run, exact, 0.9 * run.stable_dt(), 600);
-    INFO("w_0 is " << width << " cells, after " << apart.steps << " steps");
-    CHECK(apart.psi < 5e-4);
-  }
+TEST_CASE("over many steps psi stays as near to its solution as its tolerance and the resting of tiles promise, however wide a crack is") {
+  for (const bool rests : {false, true})
+    for (const double width : {1.0, 2.0, 3.0, 4.0}) {
+      Scene scene = cracked("pbx", 40);
+      for (const Side side : {Side::top, Side::bottom}) set_load(scene, side, pull(0.2, scene.width));
+      scene.layers[0].material.characteristic_width *= width;
+      phasefield::PhaseField<double> run(scene, phasefield::chosen_kernels<double>()), exact(scene, phasefield::chosen_kernels<double>());
+      exact.model().damage_tolerance = fine;
+      exact.model().rules.work_where_it_moves = false;
+      run.model().rules.work_where_it_moves = rests;
+      const Apart apart = farthest_apart(run, exact, 0.9 * run.stable_dt(), 600);
+      INFO("w_0 is " << width << " cells, after " << apart.steps << " steps");
+      CHECK(apart.psi < (rests ? 4e-3 : 5e-4));
+    }
 }

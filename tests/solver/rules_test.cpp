@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solver/phasefield/phase_field.hpp"
 #include "solver/solve.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -35,9 +36,9 @@ Scene ramped(SurfaceModel surface) {
   return scene;
 }
 
-void check_close(const RunResult& a, const RunResult& b) {
+void check_close(const RunResult& a, const RunResult& b, double bound = 1e-4) {
   CHECK(std::abs(a.steps - b.steps) <= 1);
-  CHECK(a.peak_stress == Approx(b.peak_stress).epsilon(1e-4));
+  CHECK(a.peak_stress == Approx(b.peak_stress).epsilon(bound));
   CHECK(a.series["released_energy"].back() == Approx(b.series["released_energy"].back()).epsilon(5e-3).margin(1e-9));
 }
 
@@ -55,6 +56,50 @@ TEST_CASE("each rule left out changes a run by no more than the tolerance of its
   }
 }
 
+TEST_CASE("work where it moves changes the peak by less than 0.05 %") {
+  for (const char* material : {"pbx", "steel"}) {
+    const Scene scene = cracked(material, 64);
+    Rules rules;
+    rules.work_where_it_moves = false;
+    check_close(run(scene), run(scene, rules), 5e-4);
+  }
+}
+
+TEST_CASE("in light steps tiles that rest keep their damage and history, others go on, and the ledger closes in every step") {
+  using namespace phasefield;
+  for (const char* material : {"pbx", "steel"}) {
+    PhaseField<double> run(cracked(material, 64), chosen_kernels<double>());
+    const double dt = 0.9 * run.stable_dt();
+    REQUIRE(run.start(dt));
+    const Grid& grid = run.model().grid;
+    long long rested = 0, moved = 0, light = 0;
+    double worst = 0.0;
+    for (int n = 0; n < 300; ++n) {
+      const auto psi = run.state().psi;
+      const auto history = run.state().history[0];
+      REQUIRE(run.step(n, dt));
+      const SampleRow row = run.sample(n + 1, dt);
+      if (n > 100) worst = std::max(worst, std::abs(row.energy_residual) / row.external_work);
+      if (run.state().whole) continue;
+      ++light;
+      for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.columns; ++i) {
+          const std::size_t at = grid.index(i, j);
+          const bool moves = run.state().moves[static_cast<std::size_t>(j * grid.tiles() + i / lanes)] != 0;
+          if (moves)
+            moved += run.state().psi[at] != psi[at];
+          else
+            rested += run.state().psi[at] == psi[at] && run.state().history[0][at] == history[at] ? 1 : -1000000;
+        }
+    }
+    INFO(material);
+    CHECK(light > 150);
+    CHECK(rested > 10000);
+    CHECK(moved > 10000);
+    CHECK(worst < 2e-3);
+  }
+}
+
 TEST_CASE("steps are linear until something could damage, and the run is the same") {
   for (const SurfaceModel surface : {SurfaceModel::at2, SurfaceModel::at1}) {
     const Scene scene = ramped(surface);
@@ -63,7 +108,8 @@ TEST_CASE("steps are linear until something could damage, and the run is the sam
     const RunResult with = run(scene), without = run(scene, rules);
     CHECK(sum(with.series["solver_iterations"]) < sum(without.series["solver_iterations"]));
     REQUIRE(with.damage_failure.size() == without.damage_failure.size());
-    for (std::size_t n = 0; n < with.damage_failure.size(); ++n) CHECK(std::abs(with.damage_failure[n] - without.damage_failure[n]) < 1e-3f);
-    CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(1e-4));
+    for (std::size_t n = 0; n < with.damage_failure.size(); ++n)
+      CHECK(std::abs(with.damage_failure[n] - without.damage_failure[n]) < 1e-3f);
+    CHECK(with.peak_stress == Approx(without.peak_stress).epsilon(5e-4));  // whole steps come at the same n, but judge other tiles
   }
 }

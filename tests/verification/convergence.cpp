@@ -101,6 +101,7 @@ Bench run_waves(const Material& material, const Waves& waves, int level, double 
   between_rollers(scene);
   Bench bench(scene);
   bench.model.damage_tolerance = 1e-11;
+  bench.model.rules.work_where_it_moves = false;
   if (push > 0.0)
     bench.set_velocity([&](double x, double z) { return waves.at(x, z, push, push); });
   else

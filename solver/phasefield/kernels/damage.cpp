@@ -19,17 +19,18 @@ INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real om
   const Real* here = psi + at;
   const Real *south = j > 0 ? here - v.stride : here + v.stride, *north = j + 1 < v.rows ? here + v.stride : here - v.stride;
   const Real *source = v.source + at, *inverse = v.inverse_diagonal + at;
+  const Real* whole = v.whole_nodes + at;
   Real* out = next + at;
-  Real change = Real(0);
-#pragma omp simd reduction(max : change)
-  for (Index i = 0; i < v.columns; ++i) {
-    const Real z = inverse[i] * ((source[i] + c.side * (here[i - 1] + here[i + 1])) + (c.south * south[i] + c.north * north[i]));
-    if (last) change = larger(std::abs(z - here[i]), change);
-    const Real relaxed = first ? z : out[i] + omega * (z - out[i]);
-    out[i] = last ? within_bounds(relaxed) : relaxed;
-  }
+  Partial change;
+  along_worked_tiles(
+      v, j, TILE_BODY {
+        const Real z = inverse[i] * ((source[i] + c.side * (here[i - 1] + here[i + 1])) + (c.south * south[i] + c.north * north[i]));
+        if (last) change.at[l] = larger(whole[i] * std::abs(z - here[i]), change.at[l]);
+        const Real relaxed = first ? z : out[i] + omega * (z - out[i]);
+        out[i] = last ? within_bounds(relaxed) : relaxed;
+      });
   mirror(v, out);
-  return change;
+  return last ? largest(change.at) : Real(0);
 }
 
 }  // namespace
@@ -37,8 +38,8 @@ INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real om
 void guess(const View& v, int j, const Real* psi, Real* previous) {
   const Real* now = psi + row_at(v, j);
   Real* out = previous + row_at(v, j);
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) out[i] = within_bounds(Real(2) * now[i] - out[i]);
+  along_worked_tiles(
+      v, j, TILE_BODY { out[i] = within_bounds(Real(2) * now[i] - out[i]); });
   mirror(v, out);
 }
 
@@ -51,9 +52,26 @@ double settle(const View& v, int j, Real* psi) {
   const Index at = row_at(v, j);
   Real* fresh = scratch_row(v, first_free_row);
   const Real change = sweep_row<true, true>(v, j, psi, fresh - at, Real(1));
-  for (Index i = 0; i < v.columns; ++i) psi[at + i] = fresh[i];
+  along_worked_tiles(
+      v, j, TILE_BODY { psi[at + i] = fresh[i]; });
   mirror(v, psi + at);
   return change;
+}
+
+void rest(const View& v, int j, const Real* psi, Real* previous, Real* other) {
+  const Real *now = psi + row_at(v, j), *whole = v.whole_nodes + row_at(v, j);
+  Real *before = previous + row_at(v, j), *spare = other + row_at(v, j);
+  Index flag = Index(j) * v.tiles;
+  for (Index tile = 0; tile < v.padded; tile += lanes, ++flag) {
+    Partial change;
+    along_tile(
+        tile, TILE_BODY { change.at[l] = whole[i] * std::abs(now[i] - before[i]); });
+    v.moves[flag] = v.slips[flag] || largest(change.at) > (v.moves[flag] ? v.moved_damage / Real(rest_steps) : v.moved_damage);
+    if (!v.moves[flag])
+      along_tile(
+          tile, TILE_BODY { before[i] = spare[i] = now[i]; });
+  }
+  mirror(v, before), mirror(v, spare);
 }
 
 SurfaceSum surface(const View& v, int j, const Real* psi) {

@@ -8,20 +8,22 @@ namespace {
 constexpr Real pinned_source = sizeof(Real) == 8 ? Real(0x1p200) : Real(0x1p100);
 constexpr Real pinned_inverse = sizeof(Real) == 8 ? Real(0x1p-200) : Real(0x1p-100);
 
-// The four fields of a row, and what the psi equation makes of them.
+// The fields of a row, and what the psi equation makes of them.
 struct Row {
-  Real *sw, *se, *nw, *ne, *stored, *source, *inverse;
+  Real *sw, *se, *nw, *ne, *stored, *before, *source, *inverse;
   Real weight, threshold, diagonal;
 };
 
 INLINE Row row_of(const View& v, int j) {
   const Index at = row_at(v, j);
   const NodeRow& c = v.node_rows[j];
-  return {v.history[0] + at, v.history[1] + at,       v.history[2] + at, v.history[3] + at, v.stored + at,
+  return {v.history[0] + at, v.history[1] + at,       v.history[2] + at, v.history[3] + at, v.stored + at, v.stored_before + at,
           v.source + at,     v.inverse_diagonal + at, c.weight,          c.threshold,       c.diagonal};
 }
 
-INLINE void commit(const Row& row, Index i, Real sw, Real se, Real nw, Real ne) {
+INLINE void commit(const Row& row, Index i, Real stored, Real sw, Real se, Real nw, Real ne) {
+  row.before[i] = row.stored[i];
+  row.stored[i] = stored;
   const Real a = larger(sw, row.sw[i]), b = larger(se, row.se[i]), c = larger(nw, row.nw[i]), d = larger(ne, row.ne[i]);
   row.sw[i] = a, row.se[i] = b, row.nw[i] = c, row.ne[i] = d;
   const Real sum = row.weight * ((a + b) + (c + d));
@@ -29,21 +31,12 @@ INLINE void commit(const Row& row, Index i, Real sw, Real se, Real nw, Real ne) 
   row.inverse[i] = Real(1) / (row.diagonal + sum);
 }
 
-// Half the stiffness per squared spacing, for differences of displacements. Shear is (z_e hz / hx + x_n)^2 c55.
-struct Differenced {
-  Real c11, c33, c13, c55;
-};
-
-INLINE Differenced differenced(const View& v, const ElementRow& row) {
-  const Real x = Real(1.0 / v.hx), z = Real(1.0 / v.hz), half = Real(0.5);
-  const Stiffness& C = row.stiffness;
-  return {half * C.C11 * x * x, half * C.C33 * z * z, C.C13 * x * z, half * C.C55 * z * z};
-}
-
 template <bool clips>
 INLINE Real driving(Real difference) {
   return clips ? law::positive(difference) : difference;
 }
+
+using Differenced = phasefield::Differenced<Real>;
 
 // Differences of the displacements around a node, ratio = hz / hx: shear strains of the quadrants in units of 1 / hz.
 struct Differences {
@@ -78,100 +71,91 @@ template <bool clips>
 INLINE void elastic_history(const View& v, int j) {
   const Row row = row_of(v, j);
   const Around u = around(v, j);
-  const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
+  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
   const Real ratio = Real(v.hz / v.hx);
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), row.stored[i]);
-    commit(row, i, drives.sw, drives.se, drives.nw, drives.ne);
-  }
+  along_worked_tiles(
+      v, j, TILE_BODY {
+        Real stored;
+        const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), stored);
+        commit(row, i, stored, drives.sw, drives.se, drives.nw, drives.ne);
+      });
 }
 
-// The secant law of a row of elements in differences of displacements. With p = (q / sigma_y)^2, a quadratic form of the strain, and
-// r = sigma_y / q past yield, else 1, yielding takes the share (1 - h) (1 - r) of mu: the drive loses `drive` (1 - r) p of the strain that
-// drives, and the potential `energy` (q / sigma_y - 1)^2, see law::stored_energy. All are 0 where the row does not yield at all.
-struct Yielding {
-  Real normal_x, normal_z, cross, shear;  // of p
-  Real soft;                              // 1 - h
-  Real drive, energy;                     // J/m^3
+using Yielding = phasefield::Yielding<Real>;
 
-  INLINE Real p(Real x, Real z, Real shear_difference) const {
-    return (normal_x * (x * x) + normal_z * (z * z)) + (shear * (shear_difference * shear_difference) - cross * (x * z));
-  }
+INLINE Real yield_form(const Yielding& law, Real x, Real z, Real shear) {
+  return (law.normal_x * (x * x) + law.normal_z * (z * z)) + (law.shear * (shear * shear) - law.cross * (x * z));
+}
+
+// What yielding takes from a quadrant, and how far it moves s.
+template <bool clips>
+INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction, Real& moved) {
+  const Real p = larger(yield_form(law, x, z, shear), Real(1)), r = Real(1) / std::sqrt(p), past = p * r - Real(1), lost = Real(1) - r;
+  drive -= law.drive * lost * (clips ? yield_form(law, driving<clips>(x), driving<clips>(z), shear) : p);
+  stored -= law.energy * (past * past);
+  const Real now = Real(1) - law.soft * lost;
+  moved = larger(std::abs(now - reduction), moved);
+  reduction = now;
+}
+
+// One tile on its way through the secant law.
+struct alignas(64) Tile {
+  Real sw[lanes], se[lanes], nw[lanes], ne[lanes], stored[lanes], most[lanes], moved[lanes];
 };
 
-INLINE Yielding yielding(const View& v, const ElementRow& row) {
-  if (!row.plastic) return {};
-  const double mu = row.secant.mu, yield = row.secant.yield, soft = 1.0 - double(row.secant.hardening_share);
-  const double unit = 6.0 * mu * mu / (yield * yield), x = 1.0 / v.hx, z = 1.0 / v.hz;
-  return {Real(2.0 / 3.0 * unit * x * x),
-          Real(2.0 / 3.0 * unit * z * z),
-          Real(2.0 / 3.0 * unit * x * z),
-          Real(0.5 * unit * z * z),
-          Real(soft),
-          Real(soft * mu / unit),
-          Real(soft * yield * yield / (6.0 * mu))};
-}
-
-// What yielding takes from a quadrant.
+// Tiles that may yield: elastic first, and those that yield once more. Of nodes that a crack holds nothing but the residual stiffness is
+// left, and an open crack's strain is no strain of the metal: they do not make a tile yield.
 template <bool clips>
-INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction) {
-  const Real p = larger(law.p(x, z, shear), Real(1)), r = Real(1) / std::sqrt(p), past = p * r - Real(1), lost = Real(1) - r;
-  drive -= law.drive * lost * (clips ? law.p(driving<clips>(x), driving<clips>(z), shear) : p);
-  stored -= law.energy * (past * past);
-  reduction = Real(1) - law.soft * lost;
-}
-
-// Rows that may yield: elastic first, and the tiles that yield once more. Of nodes that a crack holds nothing but the residual stiffness is
-// left, and an open crack's strain is no strain of the metal: they do not make a tile yield. Returns whether any does.
-template <bool clips>
-INLINE bool plastic_history(const View& v, int j) {
+INLINE void plastic_history(const View& v, int j) {
   const Row row = row_of(v, j);
   const Around u = around(v, j);
-  const Differenced n = differenced(v, v.element_rows[j + 1]), s = differenced(v, v.element_rows[j]);
-  const Yielding above = yielding(v, v.element_rows[j + 1]), below = yielding(v, v.element_rows[j]);
+  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
+  const Yielding above = v.element_rows[j + 1].yielding, below = v.element_rows[j].yielding;
   const Real ratio = Real(v.hz / v.hx);
   const Index at = row_at(v, j);
-  const Real* whole = v.whole + at;
-  Real *sw = scratch_row(v, first_free_row), *se = scratch_row(v, first_free_row + 1), *nw = scratch_row(v, first_free_row + 2),
-       *ne = scratch_row(v, first_free_row + 3), *most = scratch_row(v, first_free_row + 4);
-  Real row_most = Real(0);
-#pragma omp simd reduction(max : row_most)
-  for (Index i = 0; i < v.padded; ++i) {
-    const Differences d = differences(u, i, ratio);
-    const Drives drives = elastic_drives<clips>(n, s, d, row.stored[i]);
-    sw[i] = drives.sw, se[i] = drives.se, nw[i] = drives.nw, ne[i] = drives.ne;
-    const Real p_south = larger(below.p(d.xw, d.zs, d.sw), below.p(d.xe, d.zs, d.se));
-    const Real p = whole[i] * larger(p_south, larger(above.p(d.xw, d.zn, d.nw), above.p(d.xe, d.zn, d.ne)));
-    most[i] = p;
-    row_most = larger(p, row_most);
-  }
-  const bool yields = !v.tests_yield || row_most > Real(1);
+  const Real* whole = v.whole_nodes + at;
   Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
-  for (Index tile = 0; yields && tile < v.padded; tile += lanes) {
-    if (!v.tests_yield || largest(most + tile) > Real(1))
-      along_tile(
-          tile, TILE_BODY {
-            const Differences d = differences(u, i, ratio);
-            yield<clips>(below, d.xw, d.zs, d.sw, sw[i], row.stored[i], r0[i]);
-            yield<clips>(below, d.xe, d.zs, d.se, se[i], row.stored[i], r1[i]);
-            yield<clips>(above, d.xw, d.zn, d.nw, nw[i], row.stored[i], r2[i]);
-            yield<clips>(above, d.xe, d.zn, d.ne, ne[i], row.stored[i], r3[i]);
-          });
-    else
-      along_tile(
-          tile, TILE_BODY { r0[i] = r1[i] = r2[i] = r3[i] = Real(1); });
-  }
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) commit(row, i, sw[i], se[i], nw[i], ne[i]);
-  return yields;
+  Tile t;
+  over_tiles(
+      v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
+        along_tile(
+            tile, TILE_BODY {
+              const Differences d = differences(u, i, ratio);
+              const Drives drives = elastic_drives<clips>(n, s, d, t.stored[l]);
+              t.sw[l] = drives.sw, t.se[l] = drives.se, t.nw[l] = drives.nw, t.ne[l] = drives.ne;
+              const Real p_south = larger(yield_form(below, d.xw, d.zs, d.sw), yield_form(below, d.xe, d.zs, d.se));
+              t.most[l] = whole[i] * larger(p_south, larger(yield_form(above, d.xw, d.zn, d.nw), yield_form(above, d.xe, d.zn, d.ne)));
+            });
+        const bool yields = !v.tests_yield || largest(t.most) > Real(1);
+        if (yields)
+          along_tile(
+              tile, TILE_BODY {
+                const Differences d = differences(u, i, ratio);
+                Real moved = Real(0);
+                yield<clips>(below, d.xw, d.zs, d.sw, t.sw[l], t.stored[l], r0[i], moved);
+                yield<clips>(below, d.xe, d.zs, d.se, t.se[l], t.stored[l], r1[i], moved);
+                yield<clips>(above, d.xw, d.zn, d.nw, t.nw[l], t.stored[l], r2[i], moved);
+                yield<clips>(above, d.xe, d.zn, d.ne, t.ne[l], t.stored[l], r3[i], moved);
+                t.moved[l] = moved;
+              });
+        else if (v.yields[flag])
+          along_tile(
+              tile, TILE_BODY { r0[i] = r1[i] = r2[i] = r3[i] = Real(1); });
+        v.slips[flag] =
+            yields ? largest(t.moved) > (v.moves[flag] ? v.moved_reduction / Real(rest_steps) : v.moved_reduction) : v.yields[flag];
+        v.yields[flag] = yields;
+        along_tile(
+            tile, TILE_BODY { commit(row, i, t.stored[l], t.sw[l], t.se[l], t.nw[l], t.ne[l]); });
+      });
 }
 
 template <bool clips>
 INLINE void driving_history(const View& v, int j) {
   const bool may_yield = v.element_rows[j + 1].plastic || v.element_rows[j].plastic;
-  v.row_yields[j] = may_yield && plastic_history<clips>(v, j);
-  if (!may_yield) elastic_history<clips>(v, j);
+  if (may_yield)
+    plastic_history<clips>(v, j);
+  else
+    elastic_history<clips>(v, j);
 }
 
 // Splits that keep a part of the energy: its sum over the row, J/m.
@@ -186,9 +170,9 @@ INLINE double split_history(const View& v, int j) {
   along_row(
       v.padded, ROW_BODY {
         const Quadrants e = strains(u, i, per_hx, per_hz);
-        row.stored[i] = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
+        const Real stored = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
         kept[i] = weight[i] * ((s.kept_energy(e.sw) + s.kept_energy(e.se)) + (n.kept_energy(e.nw) + n.kept_energy(e.ne)));
-        commit(row, i, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
+        commit(row, i, stored, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
       });
   return v.corner_area * ordered_sum(kept, v.padded);
 }
@@ -216,6 +200,29 @@ double history(const View& v, int j) {
   Real *source = v.source + row_at(v, j), *inverse = v.inverse_diagonal + row_at(v, j);
   for (int k = v.pin_begin[j]; k < v.pin_begin[j + 1]; ++k) source[v.pins[k]] = pinned_source, inverse[v.pins[k]] = pinned_inverse;
   return kept;
+}
+
+// The potential of the secant law is the elastic one where p <= 1.
+double elastic_energy(const View& v, int j) {
+  const Around u = around(v, j);
+  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
+  const Yielding above = v.element_rows[j + 1].yielding, below = v.element_rows[j].yielding;
+  const Real ratio = Real(v.hz / v.hx), *g = v.degradation + row_at(v, j), *weight = v.column_weight;
+  const auto lost = [](const Yielding& law, Real x, Real z, Real shear) __attribute__((always_inline)) {
+    const Real past = std::sqrt(larger(yield_form(law, x, z, shear), Real(1))) - Real(1);
+    return law.energy * (past * past);
+  };
+  Partial energy;
+  along_tiles(
+      v.padded, TILE_BODY {
+        const Differences d = differences(u, i, ratio);
+        Real stored;
+        elastic_drives<false>(n, s, d, stored);
+        stored -= (lost(below, d.xw, d.zs, d.sw) + lost(below, d.xe, d.zs, d.se)) +
+                  (lost(above, d.xw, d.zn, d.nw) + lost(above, d.xe, d.zn, d.ne));
+        energy.at[l] += weight[i] * g[i] * stored;
+      });
+  return v.corner_area * ordered_sum(energy);
 }
 
 // source > bound (m + S), where m + S is the diagonal without the neighbours; the equation of a pinned node reads 1 = 1.

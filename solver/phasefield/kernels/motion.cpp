@@ -16,16 +16,30 @@ void drift(const View& v, int j, Real dt) {
   for (Real* u : {ux, uz}) u[-1] = Real(2) * u[0] - u[1], u[last + 1] = Real(2) * u[last] - u[last - 1];
 }
 
-double kick(const View& v, int j, Real dt) {
-  const Index at = row_at(v, j);
+namespace {
+
+// What the half edges of the rows j - 1 to j + 1 add to the force of row j.
+INLINE void add_half_edges(const View& v, int j, Real* fx, Real* fz) {
   const HalfEdges here = half_edges(v, j), above = half_edges(v, j + 1), below = half_edges(v, j - 1);
+  along_run(
+      v.half_edges[j], TILE_BODY { fx[i] += here.part_x[i], fz[i] += here.part_z[i]; });
+  along_run(
+      v.half_edges[j + 1], TILE_BODY { fx[i] += above.south_x[i], fz[i] += above.south_z[i]; });
+  along_run(
+      v.half_edges[j - 1], TILE_BODY { fx[i] -= below.north_x[i], fz[i] -= below.north_z[i]; });
+}
+
+}  // namespace
+
+void kick(const View& v, int j, Real dt, Sums& sums) {
+  const Index at = row_at(v, j);
   const bool stores = v.keeps_forces || j == 0 || j == v.rows - 1;
   Real *fx = stores ? v.fx + at : scratch_row(v, first_free_row), *fz = stores ? v.fz + at : scratch_row(v, first_free_row + 1);
-#pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    fx[i] = here.part_x[i] + (above.south_x[i] - below.north_x[i]);
-    fz[i] = here.part_z[i] + (above.south_z[i] - below.north_z[i]);
-  }
+  if (is_elastic(v.law))
+    elastic_forces(v, j, fx, fz, sums);
+  else
+    for (Index i = 0; i < v.padded; ++i) fx[i] = fz[i] = Real(0);
+  add_half_edges(v, j, fx, fz);
   for (int k = v.node_force_begin[j]; k < v.node_force_begin[j + 1]; ++k) {
     const NodeForce<Real>& force = v.node_forces[k];
     fx[force.column] += force.x, fz[force.column] += force.z;
@@ -44,7 +58,7 @@ double kick(const View& v, int j, Real dt) {
         vx[i] = x;
         vz[i] = z;
       });
-  return 0.125 * double(v.node_rows[j].mass) * ordered_sum(energy);
+  add(sums.kinetic, energy, 0.125 * double(v.node_rows[j].mass));
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -18,7 +18,6 @@ using View = phasefield::View<Real>;
 using ElementRow = phasefield::ElementRow<Real>;
 using NodeRow = phasefield::NodeRow<Real>;
 using Stiffness = law::Stiffness<Real>;
-using Secant = law::Secant<Real>;
 using Strain = law::Strain<Real>;
 using Stress = law::Stress<Real>;
 using Index = long;
@@ -62,10 +61,26 @@ INLINE void along_tile(Index tile, const Body& body) {
   }
 }
 template <class Body>
+INLINE void along_run(Run run, const Body& body) {
+  for (Index tile = run.begin; tile < run.end; tile += lanes) along_tile(tile, body);
+}
+template <class Body>
 INLINE void along_tiles(Index n, const Body& body) {
   for (Index tile = 0; tile < n; tile += lanes) along_tile(tile, body);
 }
 #define TILE_BODY [&](Index i, [[maybe_unused]] Index l) __attribute__((always_inline))
+
+// body(tile, flag) for the tiles of a row that are worked on: its first node, and where its flags are.
+template <class Body>
+INLINE void over_tiles(const View& v, int j, const Body& body) {
+  for (int k = v.run_begin[j]; k < v.run_begin[j + 1]; ++k)
+    for (Index tile = v.runs[k].begin; tile < v.runs[k].end; tile += lanes) body(tile, Index(j) * v.tiles + tile / lanes);
+}
+template <class Body>
+INLINE void along_worked_tiles(const View& v, int j, const Body& body) {
+  over_tiles(
+      v, j, [&](Index tile, Index) __attribute__((always_inline)) { along_tile(tile, body); });
+}
 
 struct Quadrants {
   Strain sw, se, nw, ne;
@@ -101,6 +116,11 @@ INLINE Real largest(const Real* x) {
   return larger(larger(four[0], four[2]), larger(four[1], four[3]));
 }
 
+// The partial sums of a row, times a factor.
+INLINE void add(Parts& sum, const Partial& part, double factor) {
+  for (int l = 0; l < lanes; ++l) sum.at[l] += factor * double(part.at[l]);
+}
+
 // Sum of n (a multiple of `lanes`) numbers.
 INLINE double ordered_sum(const Real* __restrict x, Index n) {
   Partial part;
@@ -124,20 +144,11 @@ INLINE HalfEdges half_edges(const View& v, int j) {
           scratch_row(v, k + 3), scratch_row(v, k + 4), scratch_row(v, k + 5)};
 }
 
-// The secant law of a row beside rows of any other: linear elastic (mu = 0 in `law`) where the row does not yield at all.
-struct SecantRow {
-  Stiffness elastic;
-  Secant law;
-};
+// Laws whose quadrants are linear elastic where nothing yields.
+INLINE bool is_elastic(RowLaw law) { return law == RowLaw::seed || law == RowLaw::none; }
 
-INLINE SecantRow secant_row(const ElementRow& row) { return {row.stiffness, row.secant}; }
-
-// Moduli with mu -> s mu and the bulk modulus kept.
-INLINE Stiffness reduced(const SecantRow& row, Real s) {
-  const Real lost = (Real(1) - s) * row.law.mu;
-  return {row.elastic.C11 - Real(4.0 / 3.0) * lost, row.elastic.C13 + Real(2.0 / 3.0) * lost, row.elastic.C33 - Real(4.0 / 3.0) * lost,
-          row.elastic.C55 - lost};
-}
+// Internal force of the row's nodes with linear elastic quadrants; needs u and g of the rows j - 1 to j + 1.
+void elastic_forces(const View& v, int j, Real* fx, Real* fz, Sums& sums);
 
 // Laws of the general rows, made of an element row's constants.
 template <class Law>

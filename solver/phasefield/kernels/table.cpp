@@ -9,15 +9,17 @@ bool damages(const View&, int j, Real bound);
 void guess(const View&, int j, const Real* psi, Real* previous);
 double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool last);
 double settle(const View&, int j, Real* psi);
-RowSums force(const View&, int j, const Real* psi, const Real* before);
-double kick(const View&, int j, Real dt);
-void forget(const View&, int j);
+void rest(const View&, int j, const Real* psi, Real* previous, Real* other);
+double elastic_energy(const View&, int j);
+void force(const View&, int j, const Real* psi, const Real* before, Sums&);
+void kick(const View&, int j, Real dt, Sums&);
 SurfaceSum surface(const View&, int j, const Real* psi);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
 extern const Kernels<Real> table;
-const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, force, kick, forget, surface};
+const Kernels<Real> table{
+    FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, rest, elastic_energy, force, kick, surface};
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS
