@@ -12,7 +12,7 @@ struct Rules {
   bool linear_until_damage = true;      // no work on psi until it could rise by least_damage
   bool plastic_where_it_yields = true;  // the secant law on those tiles only that do: exact, up to rounding
   bool sweep_where_it_moves = true;  // after the first sweeps only rows whose psi moved by more than the solve's tolerance, and beside them
-  bool work_where_it_moves = true;   // tiles whose psi and s hardly move are left as they are for three of four steps
+  bool work_where_it_moves = true;   // tiles that hardly change are left as they are for three of four steps
   // FDEM.
   bool contact_after_break = true;     // no search before the first broken edge, and around broken edges only
   bool damage_where_stretched = true;  // softening only where lambda > 1 or D > 0

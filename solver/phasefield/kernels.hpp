@@ -85,10 +85,9 @@ struct View {
   bool tests_yield;      // tiles that may yield are tested; else all of them run the secant law
   const int* run_begin;  // the tiles of row j that are worked on: runs[run_begin[j]] to runs[run_begin[j + 1]]
   const Run* runs;
-  Real moved_damage, moved_reduction;    // a tile moves whose psi or s changes by more than this in rest_steps steps
+  Real moved_damage;                     // a tile moves that (nearly) yields, or whose psi changes by more than this in rest_steps steps
   unsigned char* moves;                  // by tile [j tiles + t], t a group of `lanes` nodes; what it is for: see passes.hpp
-  unsigned char* slips;                  // by tile: s moved by more than that
-  unsigned char* yields;                 // by tile: s was below 1 where it was last worked on
+  unsigned char* yields;                 // by tile: does_yield where the secant law ran when it was last worked on
   const ElementRow<Real>* element_rows;  // [j] is below node row j, [j + 1] above it
   const NodeRow<Real>* node_rows;        // [j]
   const Real* column_weight;             // 1 inside, 1/2 at the sides, 0 in the pad
@@ -103,13 +102,14 @@ struct View {
   Real* reduction[4];               // secant factor s in the quadrants
   Real *source, *inverse_diagonal;  // of the psi equation
   Real *stored, *stored_before;     // undegraded energy that damage can release, summed over the quadrants, J/m^3, when a tile was last
-                                    // worked on, and the time before that
+                                    // worked on, and a step before that
   Real* degradation;                // g of psi
   Run* half_edges;                  // by row from -1 to `rows`: whose quadrants gave something to rows around; none outside
   Real *fx, *fz;                    // internal force and tractions, N/m
   Real* scratch;                    // scratch_rows rows of one thread
 };
 inline constexpr int scratch_rows = 40;
+inline constexpr unsigned char does_yield = 1, nearly_yields = 2;
 inline constexpr int rest_steps = 4;  // a whole step and the light ones after it
 
 // A sum over nodes, in parts: number l of each tile goes to part l.

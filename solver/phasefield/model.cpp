@@ -16,9 +16,9 @@ constexpr double damage_tolerance = 5e-5, damage_error = 2.5e-4;
 // In layers of several materials a correction says less of the error, psi healed by up to 9e-4; there, and past w_0 = 2.5 h, it is this.
 // Near a radius of 1 a broad zone healed by the error's bound.
 constexpr double broad_tolerance = 1e-5, broad_error = 6.5e-4;
-// What psi and the secant factor s of a tile may move by in rest_steps steps, and the tile rests. A zone narrower than a cell shows less of
-// itself before it is there: with 4e-4 a through crack of tungsten came up to 12 % apart.
-constexpr double moved_damage = 4e-4, moved_damage_narrow = 1e-4, moved_reduction = 1e-3;
+// What psi may move by in rest_steps steps, and the tile rests. A zone narrower than a cell shows less of itself before it is there: with
+// 4e-4 a through crack of tungsten came up to 12 % apart.
+constexpr double moved_damage = 4e-4, moved_damage_narrow = 1e-4;
 // Corrections in float do not get below the last.
 constexpr double least_tolerance = 1e-12, least_tolerance_float = 5e-7;
 // What the sweeps of the whole grid should leave of the guess's error.
@@ -210,7 +210,6 @@ Model build_model(const Scene& scene) {
   set_rows(model, scene);
   model.damage_tolerance = tolerance_of(model.jacobi_radius, settings.precision, is_of_one_surface(scene));
   model.moved_damage = is_narrow(scene, model.grid) ? moved_damage_narrow : moved_damage;
-  model.moved_reduction = moved_reduction;
   model.damage_sweeps = sweeps_of(model.jacobi_radius);
   model.boundary = build_boundary(scene, side_nodes(model.grid, [&](int column, int row) { return model.grid.index(column, row); }));
   hold(model);

@@ -160,7 +160,7 @@ void PhaseField<Real>::save(ArchiveWriter& archive) const {
   for (const Field<Real>& field : state_.history) archive.put_array(field);
   for (const Field<Real>& field : state_.reduction) archive.put_array(field);
   archive.put_array(state_.stored);
-  for (const std::vector<unsigned char>* flags : {&state_.moves, &state_.slips, &state_.yields}) archive.put_array(*flags);
+  for (const std::vector<unsigned char>* flags : {&state_.moves, &state_.yields}) archive.put_array(*flags);
   for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
   archive.put(state_.sums);
   archive.put(state_.damages);
@@ -175,7 +175,7 @@ bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
   for (Field<Real>& field : state_.history) archive.get_array_like(field);
   for (Field<Real>& field : state_.reduction) archive.get_array_like(field);
   archive.get_array_like(state_.stored);
-  for (std::vector<unsigned char>* flags : {&state_.moves, &state_.slips, &state_.yields}) archive.get_array_like(*flags);
+  for (std::vector<unsigned char>* flags : {&state_.moves, &state_.yields}) archive.get_array_like(*flags);
   for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})
     *value = archive.get<double>();
   state_.sums = archive.get<StepSums>();

@@ -119,7 +119,7 @@ State<Real> make_state(const Model& model) {
   state.reduction.fill(grid.field<Real>(Real(1)));
   state.stored = zero;
   const std::size_t tiles = static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.tiles());
-  state.moves.assign(tiles, 1), state.slips.assign(tiles, 0), state.yields.assign(tiles, 0);
+  state.moves.assign(tiles, 1), state.yields.assign(tiles, 0);
   for (const std::size_t n : model.pinned) state.psi[n] = state.psi_previous[n] = Real(1);
   for (int j = 0; j < grid.cells_z() && !model.first_history.empty(); ++j)
     for (int i = 0; i < grid.cells_x(); ++i) {
@@ -176,9 +176,9 @@ View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) 
   v.tests_yield = model.rules.plastic_where_it_yields;
   const RunList& work = state.whole ? tables.whole_rows : scratch.moving;
   v.run_begin = work.begin.data(), v.runs = work.runs.data();
-  v.moved_damage = static_cast<Real>(model.moved_damage), v.moved_reduction = static_cast<Real>(model.moved_reduction);
+  v.moved_damage = static_cast<Real>(model.moved_damage);
   v.moves = state.moves.data();
-  v.slips = state.slips.data(), v.yields = state.yields.data();
+  v.yields = state.yields.data();
   v.element_rows = tables.element_rows.data(), v.node_rows = tables.node_rows.data();
   v.column_weight = tables.column_weight.data();
   v.whole_nodes = tables.whole.data() + at;

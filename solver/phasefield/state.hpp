@@ -24,14 +24,14 @@ struct StepSums {
 
 template <class Real>
 struct State {
-  Field<Real> ux, uz;                               // m
-  Field<Real> vx, vz;                               // m/s, half a step ahead of the displacements
-  std::array<Field<Real>, 4> history;               // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
-  Field<Real> psi, psi_previous;                    // of this step and the one before (its extrapolation starts the next solve)
-  std::array<Field<Real>, 4> reduction;             // secant factor s in the quadrants
-  Field<Real> stored;                               // see View
-  std::vector<unsigned char> moves, slips, yields;  // by tile, see View
-  bool whole = true;                                // the last step worked on all tiles
+  Field<Real> ux, uz;                        // m
+  Field<Real> vx, vz;                        // m/s, half a step ahead of the displacements
+  std::array<Field<Real>, 4> history;        // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
+  Field<Real> psi, psi_previous;             // of this step and the one before (its extrapolation starts the next solve)
+  std::array<Field<Real>, 4> reduction;      // secant factor s in the quadrants
+  Field<Real> stored;                        // see View
+  std::vector<unsigned char> moves, yields;  // by tile, see View
+  bool whole = true;                         // the last step worked on all tiles
   StepSums sums;
   bool damages = false;          // psi could have risen since t = 0
   double external_work = 0.0;    // J/m since t = 0

@@ -106,7 +106,7 @@ INLINE void yielded_force(const View& v, int j, Run run, const Rows& rows, const
   const Real* degradation = rows.g;
   const unsigned char* yields = v.yields + Index(j) * v.tiles;
   for (Index tile = run.begin; tile < run.end; tile += lanes)
-    if (yields[tile / lanes])
+    if (yields[tile / lanes] == does_yield)
       along_tile(
           tile, TILE_BODY {
             const Quadrants e = strains(u, i, per_hx, per_hz);
@@ -146,9 +146,9 @@ INLINE void split_force(const View& v, int j, Run run, const Rows& rows, const H
 INLINE Run yielding_run(const View& v, int j) {
   const unsigned char* yields = v.yields + Index(j) * v.tiles;
   int first = 0, last = v.tiles - 1;
-  while (first < v.tiles && !yields[first]) ++first;
+  while (first < v.tiles && yields[first] != does_yield) ++first;
   if (first == v.tiles) return {0, 0};
-  while (!yields[last]) --last;
+  while (yields[last] != does_yield) --last;
   return {(first > 0 ? first - 1 : 0) * lanes, (last + 1 < v.tiles ? last + 2 : v.tiles) * lanes};
 }
 

@@ -21,8 +21,12 @@ INLINE Row row_of(const View& v, int j) {
           v.source + at,     v.inverse_diagonal + at, c.weight,          c.threshold,       c.diagonal};
 }
 
-INLINE void commit(const Row& row, Index i, Real stored, Real sw, Real se, Real nw, Real ne) {
-  row.before[i] = row.stored[i];
+// How much nearer the step before is than the time a tile was last worked on, as a share of the time between: energies in between lie on a
+// line.
+INLINE Real nearer(const View& v, Index flag) { return v.moves[flag] ? Real(0) : Real(1) - Real(1) / Real(rest_steps); }
+
+INLINE void commit(const Row& row, Index i, Real nearer, Real stored, Real sw, Real se, Real nw, Real ne) {
+  row.before[i] = row.stored[i] + nearer * (stored - row.stored[i]);
   row.stored[i] = stored;
   const Real a = larger(sw, row.sw[i]), b = larger(se, row.se[i]), c = larger(nw, row.nw[i]), d = larger(ne, row.ne[i]);
   row.sw[i] = a, row.se[i] = b, row.nw[i] = c, row.ne[i] = d;
@@ -73,11 +77,15 @@ INLINE void elastic_history(const View& v, int j) {
   const Around u = around(v, j);
   const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
   const Real ratio = Real(v.hz / v.hx);
-  along_worked_tiles(
-      v, j, TILE_BODY {
-        Real stored;
-        const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), stored);
-        commit(row, i, stored, drives.sw, drives.se, drives.nw, drives.ne);
+  over_tiles(
+      v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
+        const Real share = nearer(v, flag);
+        along_tile(
+            tile, TILE_BODY {
+              Real stored;
+              const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), stored);
+              commit(row, i, share, stored, drives.sw, drives.se, drives.nw, drives.ne);
+            });
       });
 }
 
@@ -87,20 +95,21 @@ INLINE Real yield_form(const Yielding& law, Real x, Real z, Real shear) {
   return (law.normal_x * (x * x) + law.normal_z * (z * z)) + (law.shear * (shear * shear) - law.cross * (x * z));
 }
 
-// What yielding takes from a quadrant, and how far it moves s.
+// What yielding takes from a quadrant.
 template <bool clips>
-INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction, Real& moved) {
+INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction) {
   const Real p = larger(yield_form(law, x, z, shear), Real(1)), r = Real(1) / std::sqrt(p), past = p * r - Real(1), lost = Real(1) - r;
   drive -= law.drive * lost * (clips ? yield_form(law, driving<clips>(x), driving<clips>(z), shear) : p);
   stored -= law.energy * (past * past);
-  const Real now = Real(1) - law.soft * lost;
-  moved = larger(std::abs(now - reduction), moved);
-  reduction = now;
+  reduction = Real(1) - law.soft * lost;
 }
+
+// Tiles that will yield before long do not rest: what they took up elastically past sigma_y the potential would not give back. Of p.
+constexpr Real near_yield = Real(0.5);
 
 // One tile on its way through the secant law.
 struct alignas(64) Tile {
-  Real sw[lanes], se[lanes], nw[lanes], ne[lanes], stored[lanes], most[lanes], moved[lanes];
+  Real sw[lanes], se[lanes], nw[lanes], ne[lanes], stored[lanes], most[lanes];
 };
 
 // Tiles that may yield: elastic first, and those that yield once more. Of nodes that a crack holds nothing but the residual stiffness is
@@ -126,26 +135,24 @@ INLINE void plastic_history(const View& v, int j) {
               const Real p_south = larger(yield_form(below, d.xw, d.zs, d.sw), yield_form(below, d.xe, d.zs, d.se));
               t.most[l] = whole[i] * larger(p_south, larger(yield_form(above, d.xw, d.zn, d.nw), yield_form(above, d.xe, d.zn, d.ne)));
             });
-        const bool yields = !v.tests_yield || largest(t.most) > Real(1);
+        const Real most = largest(t.most);
+        const bool yields = !v.tests_yield || most > Real(1);
         if (yields)
           along_tile(
               tile, TILE_BODY {
                 const Differences d = differences(u, i, ratio);
-                Real moved = Real(0);
-                yield<clips>(below, d.xw, d.zs, d.sw, t.sw[l], t.stored[l], r0[i], moved);
-                yield<clips>(below, d.xe, d.zs, d.se, t.se[l], t.stored[l], r1[i], moved);
-                yield<clips>(above, d.xw, d.zn, d.nw, t.nw[l], t.stored[l], r2[i], moved);
-                yield<clips>(above, d.xe, d.zn, d.ne, t.ne[l], t.stored[l], r3[i], moved);
-                t.moved[l] = moved;
+                yield<clips>(below, d.xw, d.zs, d.sw, t.sw[l], t.stored[l], r0[i]);
+                yield<clips>(below, d.xe, d.zs, d.se, t.se[l], t.stored[l], r1[i]);
+                yield<clips>(above, d.xw, d.zn, d.nw, t.nw[l], t.stored[l], r2[i]);
+                yield<clips>(above, d.xe, d.zn, d.ne, t.ne[l], t.stored[l], r3[i]);
               });
-        else if (v.yields[flag])
+        else if (v.yields[flag] == does_yield)
           along_tile(
               tile, TILE_BODY { r0[i] = r1[i] = r2[i] = r3[i] = Real(1); });
-        v.slips[flag] =
-            yields ? largest(t.moved) > (v.moves[flag] ? v.moved_reduction / Real(rest_steps) : v.moved_reduction) : v.yields[flag];
-        v.yields[flag] = yields;
+        v.yields[flag] = yields ? does_yield : most > near_yield ? nearly_yields : 0;
+        const Real share = nearer(v, flag);
         along_tile(
-            tile, TILE_BODY { commit(row, i, t.stored[l], t.sw[l], t.se[l], t.nw[l], t.ne[l]); });
+            tile, TILE_BODY { commit(row, i, share, t.stored[l], t.sw[l], t.se[l], t.nw[l], t.ne[l]); });
       });
 }
 
@@ -172,7 +179,7 @@ INLINE double split_history(const View& v, int j) {
         const Quadrants e = strains(u, i, per_hx, per_hz);
         const Real stored = (s.degraded_energy(e.sw) + s.degraded_energy(e.se)) + (n.degraded_energy(e.nw) + n.degraded_energy(e.ne));
         kept[i] = weight[i] * ((s.kept_energy(e.sw) + s.kept_energy(e.se)) + (n.kept_energy(e.nw) + n.kept_energy(e.ne)));
-        commit(row, i, stored, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
+        commit(row, i, Real(0), stored, s.drive(e.sw), s.drive(e.se), n.drive(e.nw), n.drive(e.ne));
       });
   return v.corner_area * ordered_sum(kept, v.padded);
 }
