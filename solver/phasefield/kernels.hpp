@@ -109,7 +109,7 @@ struct View {
   Real* scratch;                    // scratch_rows rows of one thread
 };
 inline constexpr int scratch_rows = 40;
-inline constexpr unsigned char does_yield = 1, nearly_yields = 2;
+inline constexpr unsigned char does_yield = 1, nearly_yields = 2;  // flags of a tile
 inline constexpr int rest_steps = 4;  // a whole step and the light ones after it
 
 // A sum over nodes, in parts: number l of each tile goes to part l.
