@@ -10,8 +10,8 @@ namespace fracfarm::phasefield {
 inline constexpr int damage_sweeps_limit = 1000;
 
 // Where nothing much happens less is done: once psi may rise, three of four steps are light, and only the fourth is whole. A light step
-// works on H, s, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone that yield, or nearly do, or whose psi moved by more than the
-// model's moved_damage in four steps; the others rest: they keep theirs. All nodes move and feel forces in every step.
+// works on H, s, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone that yield, or nearly do, or whose psi moved by more
+// than the model's moved_damage in four steps; the others rest: they keep theirs. All nodes move and feel forces in every step.
 
 // The step from n to n + 1: u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then
 // more sweeps of those rows alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their
