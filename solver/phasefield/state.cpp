@@ -137,6 +137,8 @@ Scratch<Real> make_scratch(const Model& model) {
   for (Field<Real>* field : {&scratch.source, &scratch.inverse_diagonal, &scratch.stored_before, &scratch.degradation, &scratch.fx,
                              &scratch.fz, &scratch.psi_other})
     *field = zero;
+  scratch.moving.begin.reserve(static_cast<std::size_t>(model.grid.rows) + 1);  // the most that find_moving() needs: every other tile
+  scratch.moving.runs.reserve(static_cast<std::size_t>(model.grid.rows) * static_cast<std::size_t>(model.grid.tiles() / 2 + 1));
   scratch.half_edges.assign(static_cast<std::size_t>(model.grid.rows) + 2, Run{0, 0});
   scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
   scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
