@@ -104,11 +104,13 @@ struct View {
   Real *stored, *stored_before;     // undegraded energy that damage can release, summed over the quadrants, J/m^3, when a tile was last
                                     // worked on, and a step before that
   Real* degradation;                // g of psi
-  Run* half_edges;                  // by row from -1 to `rows`: whose quadrants gave something to rows around; none outside
+  unsigned char* gives;             // by tile, of rows from -1 to `rows`: what its quadrants gave to the forces around
   Real *fx, *fz;                    // internal force and tractions, N/m
   Real* scratch;                    // scratch_rows rows of one thread
 };
-inline constexpr int scratch_rows = 40;
+inline constexpr int scratch_rows = 150;
+inline constexpr int strip_rows = 21;  // that are kicked together, at most
+inline constexpr unsigned char gives_nothing = 0, gives_parts = 1, gives_all = 2;  // parts: to the row itself only
 inline constexpr unsigned char does_yield = 1, nearly_yields = 2;  // flags of a tile
 inline constexpr int rest_steps = 4;  // a whole step and the light ones after it
 
@@ -153,11 +155,12 @@ struct Kernels {
   void (*rest)(const View<Real>&, int j, const Real* psi, Real* previous, Real* other);
   // Energy that the row stores with the g that it has, J/m, with the seed's law: of tiles that rest, too.
   double (*elastic_energy)(const View<Real>&, int j);
-  // g of psi, and what the row's quadrants give to the forces of rows j - 1 to j + 1 beyond linear elasticity. Needs u of these. `before`
-  // is psi one step earlier.
-  void (*force)(const View<Real>&, int j, const Real* psi, const Real* before, Sums&);
-  // f of row j, once force() has seen the rows j - 1 to j + 1; v += dt f / m. Needs u of these rows.
-  void (*kick)(const View<Real>&, int j, Real dt, Sums&);
+  // g of psi. `before` is psi one step earlier.
+  void (*degrade)(const View<Real>&, int j, const Real* psi, const Real* before, Sums&);
+  // What the row's quadrants give to the forces of rows j - 1 to j + 1 beyond linear elasticity. Needs g, and u of these rows.
+  void (*force)(const View<Real>&, int j, Sums&);
+  // f of the rows of a strip (see Tables), and v += dt f / m, once force() has seen the rows first - 1 to end. Needs u and g of these rows.
+  void (*kick)(const View<Real>&, int first, int end, Real dt, Sums&);
   // Surface functional of element row j.
   SurfaceSum (*surface)(const View<Real>&, int j, const Real* psi);
 };

@@ -208,9 +208,13 @@ StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch,
   const std::size_t at = model.grid.origin();
   const Real *psi = state.psi.data() + at, *before = state.psi_previous.data() + at, step = static_cast<Real>(dt);
   Sums sums;
-  for (int front = 0; front <= v.rows; ++front) {
-    if (front < v.rows) kernels.force(v, front, psi, before, sums);
-    if (front > 0) kernels.kick(v, front - 1, step, sums);
+  int ready = 0;
+  for (const auto [first, end] : scratch.tables.strips) {
+    const int needed = std::min(end + 1, v.rows);
+    for (int j = ready; j < needed; ++j) kernels.degrade(v, j, psi, before, sums);
+    for (int j = ready; j < needed; ++j) kernels.force(v, j, sums);
+    ready = needed;
+    kernels.kick(v, first, end, step, sums);
   }
   scratch.released = sums.released.total();
   return {{sums.stress_xx.total(), sums.stress_zz.total()}, scratch.kept + sums.elastic.total(), sums.kinetic.total()};

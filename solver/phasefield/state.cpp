@@ -71,6 +71,20 @@ std::vector<int> row_begins(const Grid& grid, const std::vector<std::size_t>& so
   return begins;
 }
 
+// Neighbouring rows among elements of one kind, as many as go together; other rows by themselves.
+std::vector<Run> strips_of(const Model& model) {
+  const std::vector<NodeRow<double>>& rows = model.node_rows;
+  std::vector<Run> strips;
+  for (int j = 0; j < model.grid.rows; ++j) {
+    const auto at = [&](int row) { return rows[static_cast<std::size_t>(row)]; };
+    if (j > 0 && at(j).amid && at(j - 1).amid && at(j).mass == at(j - 1).mass && strips.back().end - strips.back().begin < strip_rows)
+      ++strips.back().end;
+    else
+      strips.push_back({j, j + 1});
+  }
+  return strips;
+}
+
 template <class Real>
 Tables<Real> make_tables(const Model& model) {
   const Grid& grid = model.grid;
@@ -84,6 +98,7 @@ Tables<Real> make_tables(const Model& model) {
   tables.inverse_mass_z = shared_rows(grid, model.inverse_mass_z, tables.inverse_masses);
   for (int j = 0; j <= grid.rows; ++j) tables.whole_rows.begin.push_back(j);
   tables.whole_rows.runs.assign(static_cast<std::size_t>(grid.rows), Run{0, grid.padded_columns()});
+  tables.strips = strips_of(model);
   std::vector<std::size_t> pinned = model.pinned, pulled;
   std::sort(pinned.begin(), pinned.end());
   tables.pin_begin = row_begins(grid, pinned);
@@ -139,7 +154,7 @@ Scratch<Real> make_scratch(const Model& model) {
     *field = zero;
   scratch.moving.begin.reserve(static_cast<std::size_t>(model.grid.rows) + 1);  // the most that find_moving() needs: every other tile
   scratch.moving.runs.reserve(static_cast<std::size_t>(model.grid.rows) * static_cast<std::size_t>(model.grid.tiles() / 2 + 1));
-  scratch.half_edges.assign(static_cast<std::size_t>(model.grid.rows) + 2, Run{0, 0});
+  scratch.gives.assign((static_cast<std::size_t>(model.grid.rows) + 2) * static_cast<std::size_t>(model.grid.tiles()), gives_nothing);
   scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
   scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
   std::size_t held = 0;
@@ -192,7 +207,7 @@ View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) 
   v.source = scratch.source.data() + at, v.inverse_diagonal = scratch.inverse_diagonal.data() + at;
   v.stored = state.stored.data() + at, v.stored_before = scratch.stored_before.data() + at;
   v.degradation = scratch.degradation.data() + at;
-  v.half_edges = scratch.half_edges.data() + 1;
+  v.gives = scratch.gives.data() + grid.tiles();
   v.fx = scratch.fx.data() + at, v.fz = scratch.fz.data() + at;
   v.scratch = scratch.rows.data() + lanes;
   return v;

@@ -56,6 +56,7 @@ struct Tables {
   std::vector<ElementRow<Real>> element_rows;
   std::vector<NodeRow<Real>> node_rows;
   RunList whole_rows;
+  std::vector<Run> strips;  // of rows that are kicked together: of one kind among elements of one kind, or one row
   Field<Real> column_weight, whole;
   std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
   std::vector<const Real*> inverse_mass_x, inverse_mass_z;
@@ -66,7 +67,7 @@ struct Tables {
 template <class Real>
 struct Scratch {
   Tables<Real> tables;
-  std::vector<Run> half_edges;  // see View; from row -1 on
+  std::vector<unsigned char> gives;  // see View; from row -1 on
   RunList moving;               // tiles that light steps work on
   Field<Real> source, inverse_diagonal, stored_before, degradation, fx, fz, psi_other;
   Field<Real> rows;                           // scratch_rows rows for the kernels

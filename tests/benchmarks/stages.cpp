@@ -90,15 +90,24 @@ constexpr KernelRow<Real> kernel_rows[] = {
     {"guess", [](Rows<Real>& r, int j) { r.kernels.guess(r.view, j, r.in(), r.out()); }},
     {"sweep", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.sweep(r.view, j, r.in(), r.out(), Real(1.1), false)); }},
     {"settle", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.settle(r.view, j, r.out())); }},
+    {"degrade",
+     [](Rows<Real>& r, int j) {
+       Sums s;
+       r.kernels.degrade(r.view, j, r.in(), r.in(), s);
+     }},
     {"force",
      [](Rows<Real>& r, int j) {
        Sums s;
-       r.kernels.force(r.view, j, r.in(), r.in(), s);
+       r.kernels.force(r.view, j, s);
      }},
     {"kick",
      [](Rows<Real>& r, int j) {
+       const auto amid = [&](int row) { return r.view.node_rows[row].amid; };
+       if (j > 0 && amid(j) && amid(j - 1) && j % strip_rows != 1) return;  // in the strip of the row before
+       int end = j + 1;
+       while (end < r.view.rows && amid(j) && amid(end) && end % strip_rows != 1) ++end;
        Sums s;
-       r.kernels.kick(r.view, j, Real(0), s);
+       r.kernels.kick(r.view, j, end, Real(0), s);
      }},
     {"surface", [](Rows<Real>& r, int j) { benchmark::DoNotOptimize(r.kernels.surface(r.view, std::min(j, r.view.rows - 2), r.in())); }},
 };

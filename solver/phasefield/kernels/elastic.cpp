@@ -63,22 +63,6 @@ INLINE Force between(const Law& c, const Nodes& at, Index i, Real weight) {
   return {edges.x + (east.x - west.x) + weight * vertical.x, edges.z + (east.z - west.z) + weight * vertical.z};
 }
 
-// A node among elements of one kind.
-INLINE Force amid(const Law& c, const Nodes& at, Index i, Real weight) {
-  const Around& u = at.u;
-  const Real g = at.g[i], ge = at.g[i + 1], gw = at.g[i - 1], gn = at.g_north[i], gs = at.g_south[i];
-  const Real x_ne = u.x_north[i + 1], x_nw = u.x_north[i - 1], x_se = u.x_south[i + 1], x_sw = u.x_south[i - 1];
-  const Real z_ne = u.z_north[i + 1], z_nw = u.z_north[i - 1], z_se = u.z_south[i + 1], z_sw = u.z_south[i - 1];
-  const Real north = g + gn, south = g + gs, two = Real(2), x = u.x[i], z = u.z[i];
-  const Force edges = along_edges(c, at, i);
-  const Real up_x =
-      two * c.n.c55 * (north * (u.x_north[i] - x) - south * (x - u.x_south[i])) + c.n.shear * (gn * (z_ne - z_nw) - gs * (z_se - z_sw));
-  const Real up_z =
-      two * c.n.c33 * (north * (u.z_north[i] - z) - south * (z - u.z_south[i])) + c.n.c13 * (gn * (x_ne - x_nw) - gs * (x_se - x_sw));
-  return {(edges.x + c.n.c13 * (ge * (z_ne - z_se) - gw * (z_nw - z_sw))) + weight * up_x,
-          (edges.z + c.n.shear * (ge * (x_ne - x_se) - gw * (x_nw - x_sw))) + weight * up_z};
-}
-
 // At the left and the right side the place of a neighbour's stress is taken by the node's own.
 INLINE void mend_sides(const View& v, const Law& c, const Nodes& at, Real* fx, Real* fz) {
   const Index last = v.columns - 1;
@@ -87,28 +71,21 @@ INLINE void mend_sides(const View& v, const Law& c, const Nodes& at, Real* fx, R
   fx[last] -= east.x + end.x, fz[last] -= east.z + end.z;
 }
 
-// All nodes of a row, and its share of the stress integrals; `weight` is 1/2 at the sides, which have half of the edges along z.
-template <bool is_amid>
-INLINE void forces_of(const View& v, const Law& c, const Nodes& at, Real* fx, Real* fz, Sums& sums) {
+// A row between elements of two kinds, and its share of the stress integrals; `weight` is 1/2 at the sides, which have half of the edges
+// along z.
+INLINE void forces_between(const View& v, const Law& c, const Nodes& at, Real* fx, Real* fz, Sums& sums) {
   const Real *weight = v.column_weight, two = Real(2);
   const Around& u = at.u;
   Partial xx, zz;
   along_tiles(
       v.padded, TILE_BODY {
         const Real w = weight[i], weighted = w * at.g[i], x = across(u.x, i);
-        const Force f = is_amid ? amid(c, at, i, w) : between(c, at, i, w);
-        fx[i] = f.x, fz[i] = f.z;
-        if (is_amid) {
-          const Real z = u.z_north[i] - u.z_south[i];
-          xx.at[l] += weighted * (c.along_x * x + two * c.n.c13 * z);
-          zz.at[l] += weighted * (two * c.n.c33 * z + two * c.n.c13 * x);
-        } else {
-          const Real zn = u.z_north[i] - u.z[i], zs = u.z[i] - u.z_south[i];
-          xx.at[l] += weighted * (c.along_x * x + two * (c.n.c13 * zn + c.s.c13 * zs));
-          zz.at[l] += weighted * (two * (c.n.c33 * zn + c.s.c33 * zs) + (c.n.c13 + c.s.c13) * x);
-        }
+        const Force force = between(c, at, i, w);
+        fx[i] = force.x, fz[i] = force.z;
+        const Real zn = u.z_north[i] - u.z[i], zs = u.z[i] - u.z_south[i];
+        xx.at[l] += weighted * (c.along_x * x + two * (c.n.c13 * zn + c.s.c13 * zs));
+        zz.at[l] += weighted * (two * (c.n.c33 * zn + c.s.c33 * zs) + (c.n.c13 + c.s.c13) * x);
       });
-  mend_sides(v, c, at, fx, fz);
   add(sums.stress_xx, xx, v.hx);
   add(sums.stress_zz, zz, v.hz);
 }
@@ -119,10 +96,8 @@ void elastic_forces(const View& v, int j, Real* fx, Real* fz, Sums& sums) {
   const Law c = law_of(v, j);
   const Real* g = v.degradation + row_at(v, j);
   const Nodes at{around(v, j), g, g - v.stride, g + v.stride};
-  if (v.node_rows[j].amid)
-    forces_of<true>(v, c, at, fx, fz, sums);
-  else
-    forces_of<false>(v, c, at, fx, fz, sums);
+  forces_between(v, c, at, fx, fz, sums);
+  mend_sides(v, c, at, fx, fz);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -20,9 +20,12 @@ INLINE Rows rows_of(const View& v, int j) {
           scratch_row(v, k + 3),        scratch_row(v, k + 4), scratch_row(v, k + 5)};
 }
 
+}  // namespace
+
 // What a node releases in a step: (g_n - g_n+1) sqrt(W_n W_n+1). The scheme itself exchanges 1/2 eps_n : C : eps_n+1 there, which this is
 // where the strain grows in proportion; the arithmetic mean left the ledger four times as open (0.23 % against 0.06 % in shale).
-INLINE void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& sums) {
+void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& sums) {
+  if (v.run_begin[j] == v.run_begin[j + 1]) return;
   const Index at = row_at(v, j);
   const Real *now_row = psi + at, *before_row = before + at, *stored = v.stored + at, *stored_before = v.stored_before + at;
   const Real *weight = v.column_weight, eta = v.eta;
@@ -41,6 +44,8 @@ INLINE void degrade(const View& v, int j, const Real* psi, const Real* before, S
   add(sums.released, released, v.corner_area);
   add(sums.elastic, elastic, v.corner_area);
 }
+
+namespace {
 
 // Any law: from the stress of each quadrant, g degraded + kept.
 class QuadrantForces {
@@ -70,19 +75,40 @@ class QuadrantForces {
   Real x_, z_;
 };
 
-// Beside the run nothing acts; outside the sides the inner quadrants are mirrored.
-INLINE void finish_quadrants(const View& v, Run run, const Rows& rows, const HalfEdges& out, Sums& sums) {
+// body(first node) for the tiles of a row that give something.
+template <class Body>
+INLINE void over_giving(const View& v, const unsigned char* gives, const Body& body) {
+  for (Index t = 0; t < v.tiles; ++t)
+    if (gives[t] != gives_nothing) body(t * lanes, t);
+}
+
+// Beside the tiles that give nothing acts; outside the sides the inner quadrants are mirrored.
+INLINE void close_ends(const View& v, const unsigned char* gives, const Rows& rows) {
   const Index last = v.columns - 1;
-  rows.east_x[run.begin - 1] = rows.east_z[run.begin - 1] = rows.west_x[run.end] = rows.west_z[run.end] = Real(0);
-  if (run.begin == 0) rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
-  if (run.end > last) rows.west_x[last + 1] = -rows.east_x[last], rows.west_z[last + 1] = -rows.east_z[last];
+  over_giving(
+      v, gives, [&](Index tile, Index t) __attribute__((always_inline)) {
+        const Index end = tile + lanes;
+        if (t == 0 || gives[t - 1] == gives_nothing) rows.east_x[tile - 1] = rows.east_z[tile - 1] = Real(0);
+        if (t + 1 == v.tiles || gives[t + 1] == gives_nothing) rows.west_x[end] = rows.west_z[end] = Real(0);
+        if (t == 0) rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
+        if (end > last) rows.west_x[last + 1] = -rows.east_x[last], rows.west_z[last + 1] = -rows.east_z[last];
+      });
+}
+
+INLINE void finish_quadrants(const View& v, const unsigned char* gives, const Rows& rows, const HalfEdges& out, Sums& sums) {
+  close_ends(v, gives, rows);
   Partial xx, zz;
-  along_run(
-      run, TILE_BODY {
-        out.part_x[i] = (rows.east_x[i] + rows.west_x[i + 1]) - (rows.east_x[i - 1] + rows.west_x[i]) + (out.north_x[i] - out.south_x[i]);
-        out.part_z[i] = (rows.east_z[i] + rows.west_z[i + 1]) - (rows.east_z[i - 1] + rows.west_z[i]) + (out.north_z[i] - out.south_z[i]);
-        xx.at[l] += rows.stress_xx[i];
-        zz.at[l] += rows.stress_zz[i];
+  over_giving(
+      v, gives, [&](Index tile, Index) __attribute__((always_inline)) {
+        along_tile(
+            tile, TILE_BODY {
+              out.part_x[i] =
+                  (rows.east_x[i] + rows.west_x[i + 1]) - (rows.east_x[i - 1] + rows.west_x[i]) + (out.north_x[i] - out.south_x[i]);
+              out.part_z[i] =
+                  (rows.east_z[i] + rows.west_z[i + 1]) - (rows.east_z[i - 1] + rows.west_z[i]) + (out.north_z[i] - out.south_z[i]);
+              xx.at[l] += rows.stress_xx[i];
+              zz.at[l] += rows.stress_zz[i];
+            });
       });
   add(sums.stress_xx, xx, v.hx);
   add(sums.stress_zz, zz, v.hz);
@@ -96,7 +122,7 @@ INLINE Stress yielded_stress(Real mu, Real g, Real s, Strain e) {
 
 INLINE Real secant_mu(const ElementRow& row) { return row.plastic ? row.stiffness.C55 : Real(0); }
 
-INLINE void yielded_force(const View& v, int j, Run run, const Rows& rows, const HalfEdges& out, Sums& sums) {
+INLINE void yielded_force(const View& v, int j, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
   const Real n = secant_mu(v.element_rows[j + 1]), s = secant_mu(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
@@ -104,20 +130,20 @@ INLINE void yielded_force(const View& v, int j, Run run, const Rows& rows, const
   const Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
   const QuadrantForces forces(v, rows, out);
   const Real* degradation = rows.g;
-  const unsigned char* yields = v.yields + Index(j) * v.tiles;
-  for (Index tile = run.begin; tile < run.end; tile += lanes)
-    if (yields[tile / lanes] == does_yield)
-      along_tile(
-          tile, TILE_BODY {
-            const Quadrants e = strains(u, i, per_hx, per_hz);
-            const Real g = degradation[i];
-            forces.add(i, yielded_stress(s, g, r0[i], e.sw), yielded_stress(s, g, r1[i], e.se), yielded_stress(n, g, r2[i], e.nw),
-                       yielded_stress(n, g, r3[i], e.ne));
-          });
-    else
-      along_tile(
-          tile, TILE_BODY { forces.add(i, {}, {}, {}, {}); });
-  finish_quadrants(v, run, rows, out, sums);
+  over_giving(
+      v, gives, [&](Index tile, Index t) __attribute__((always_inline)) {
+        if (gives[t] == gives_all)
+          along_tile(
+              tile, TILE_BODY {
+                const Quadrants e = strains(u, i, per_hx, per_hz);
+                const Real g = degradation[i];
+                forces.add(i, yielded_stress(s, g, r0[i], e.sw), yielded_stress(s, g, r1[i], e.se), yielded_stress(n, g, r2[i], e.nw),
+                           yielded_stress(n, g, r3[i], e.ne));
+              });
+        else
+          along_tile(
+              tile, TILE_BODY { forces.add(i, {}, {}, {}, {}); });
+      });
 }
 
 template <class Law>
@@ -127,7 +153,7 @@ INLINE Stress split_stress(const Law& law, Real g, const Strain& e) {
 }
 
 template <class Law>
-INLINE void split_force(const View& v, int j, Run run, const Rows& rows, const HalfEdges& out, Sums& sums) {
+INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
   const Around u = around(v, j);
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
@@ -139,39 +165,42 @@ INLINE void split_force(const View& v, int j, Run run, const Rows& rows, const H
         const Real g = degradation[i];
         forces.add(i, split_stress(s, g, e.sw), split_stress(s, g, e.se), split_stress(n, g, e.nw), split_stress(n, g, e.ne));
       });
-  finish_quadrants(v, run, rows, out, sums);
 }
 
-// The tiles that yield, all between them, and one on either side, whose nodes feel their edges.
-INLINE Run yielding_run(const View& v, int j) {
+// Tiles that yield give all, those beside them their parts at these edges; splits give everywhere. True where a tile gives.
+INLINE bool find_giving(const View& v, int j, unsigned char* gives) {
   const unsigned char* yields = v.yields + Index(j) * v.tiles;
-  int first = 0, last = v.tiles - 1;
-  while (first < v.tiles && yields[first] != does_yield) ++first;
-  if (first == v.tiles) return {0, 0};
-  while (yields[last] != does_yield) --last;
-  return {(first > 0 ? first - 1 : 0) * lanes, (last + 1 < v.tiles ? last + 2 : v.tiles) * lanes};
+  const auto gives_all_of = [&](Index t) { return t >= 0 && t < v.tiles && (!is_elastic(v.law) || yields[t] == does_yield); };
+  bool found = false;
+  for (Index t = 0; t < v.tiles; ++t) {
+    gives[t] = gives_all_of(t) ? gives_all : gives_all_of(t - 1) || gives_all_of(t + 1) ? gives_parts : gives_nothing;
+    found = found || gives[t] != gives_nothing;
+  }
+  return found;
 }
 
 // The law is chosen once for a row.
-INLINE void force_row(const View& v, int j, Run run, const Rows& rows, const HalfEdges& out, Sums& sums) {
+INLINE void quadrant_forces(const View& v, int j, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
   switch (v.law) {
     case RowLaw::seed:
     case RowLaw::none:
-      return yielded_force(v, j, run, rows, out, sums);
+      return yielded_force(v, j, gives, rows, out);
     case RowLaw::spectral:
-      return split_force<law::SpectralSplit<Real>>(v, j, run, rows, out, sums);
+      return split_force<law::SpectralSplit<Real>>(v, j, rows, out);
     case RowLaw::star_convex:
-      return split_force<law::StarConvexSplit<Real>>(v, j, run, rows, out, sums);
+      return split_force<law::StarConvexSplit<Real>>(v, j, rows, out);
   }
 }
 
 }  // namespace
 
-void force(const View& v, int j, const Real* psi, const Real* before, Sums& sums) {
-  if (v.run_begin[j] < v.run_begin[j + 1]) degrade(v, j, psi, before, sums);
-  const Run run = is_elastic(v.law) ? yielding_run(v, j) : Run{0, v.padded};
-  v.half_edges[j] = run;
-  if (run.begin < run.end) force_row(v, j, run, rows_of(v, j), half_edges(v, j), sums);
+void force(const View& v, int j, Sums& sums) {
+  unsigned char* gives = v.gives + Index(j) * v.tiles;
+  if (!find_giving(v, j, gives)) return;
+  const Rows rows = rows_of(v, j);
+  const HalfEdges out = half_edges(v, j);
+  quadrant_forces(v, j, gives, rows, out);
+  finish_quadrants(v, gives, rows, out, sums);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -35,124 +35,165 @@ INLINE void commit(const Row& row, Index i, Real nearer, Real stored, Real sw, R
   row.inverse[i] = Real(1) / (row.diagonal + sum);
 }
 
-template <bool clips>
-INLINE Real driving(Real difference) {
-  return clips ? law::positive(difference) : difference;
+// The same for nodes as wide as an instruction.
+INLINE void commit(const Row& row, Index i, Real nearer, Wide stored, Wide sw, Wide se, Wide nw, Wide ne) {
+  const Wide last = load(row.stored + i);
+  store(row.before + i, last + nearer * (stored - last));
+  store(row.stored + i, stored);
+  const Wide a = larger(sw, load(row.sw + i)), b = larger(se, load(row.se + i));
+  const Wide c = larger(nw, load(row.nw + i)), d = larger(ne, load(row.ne + i));
+  store(row.sw + i, a), store(row.se + i, b), store(row.nw + i, c), store(row.ne + i, d);
+  const Wide sum = row.weight * ((a + b) + (c + d));
+  store(row.source + i, sum - row.threshold);
+  store(row.inverse + i, Real(1) / (row.diagonal + sum));
 }
 
 using Differenced = phasefield::Differenced<Real>;
-
-// Differences of the displacements around a node, ratio = hz / hx: shear strains of the quadrants in units of 1 / hz.
-struct Differences {
-  Real xw, xe, zs, zn;
-  Real sw, se, nw, ne;  // shear
-};
-
-INLINE Differences differences(const Around& u, Index i, Real ratio) {
-  const Real xs = u.x[i] - u.x_south[i], xn = u.x_north[i] - u.x[i];
-  const Real zw = ratio * (u.z[i] - u.z[i - 1]), ze = ratio * (u.z[i + 1] - u.z[i]);
-  return {u.x[i] - u.x[i - 1], u.x[i + 1] - u.x[i], u.z[i] - u.z_south[i], u.z_north[i] - u.z[i], zw + xs, ze + xs, zw + xn, ze + xn};
-}
-
-struct Drives {
-  Real sw, se, nw, ne;
-};
-
-// Linear elastic quadrants. The seed's drive (clipped normal strains, whole shear) or the whole energy, and the stored energy.
-template <bool clips>
-INLINE Drives elastic_drives(const Differenced& n, const Differenced& s, const Differences& d, Real& stored) {
-  const Real shear_sw = s.c55 * (d.sw * d.sw), shear_se = s.c55 * (d.se * d.se);
-  const Real shear_nw = n.c55 * (d.nw * d.nw), shear_ne = n.c55 * (d.ne * d.ne);
-  stored = ((n.c11 + s.c11) * (d.xw * d.xw + d.xe * d.xe) + Real(2) * (n.c33 * (d.zn * d.zn) + s.c33 * (d.zs * d.zs))) +
-           ((d.xw + d.xe) * (n.c13 * d.zn + s.c13 * d.zs) + ((shear_sw + shear_se) + (shear_nw + shear_ne)));
-  const Real xw = driving<clips>(d.xw), xe = driving<clips>(d.xe), zs = driving<clips>(d.zs), zn = driving<clips>(d.zn);
-  const Real square_s = s.c33 * (zs * zs), square_n = n.c33 * (zn * zn), cross_s = s.c13 * zs, cross_n = n.c13 * zn;
-  return {xw * (s.c11 * xw + cross_s) + (square_s + shear_sw), xe * (s.c11 * xe + cross_s) + (square_s + shear_se),
-          xw * (n.c11 * xw + cross_n) + (square_n + shear_nw), xe * (n.c11 * xe + cross_n) + (square_n + shear_ne)};
-}
-
-template <bool clips>
-INLINE void elastic_history(const View& v, int j) {
-  const Row row = row_of(v, j);
-  const Around u = around(v, j);
-  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
-  const Real ratio = Real(v.hz / v.hx);
-  over_tiles(
-      v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
-        const Real share = nearer(v, flag);
-        along_tile(
-            tile, TILE_BODY {
-              Real stored;
-              const Drives drives = elastic_drives<clips>(n, s, differences(u, i, ratio), stored);
-              commit(row, i, share, stored, drives.sw, drives.se, drives.nw, drives.ne);
-            });
-      });
-}
-
 using Yielding = phasefield::Yielding<Real>;
 
-INLINE Real yield_form(const Yielding& law, Real x, Real z, Real shear) {
+// Two rows of elements with the nodes between them.
+struct Between {
+  Around u;
+  Differenced n, s;
+  Yielding above, below;
+  Real ratio;  // hz / hx
+};
+
+INLINE Between between(const View& v, int j) {
+  const ElementRow &n = v.element_rows[j + 1], &s = v.element_rows[j];
+  return {around(v, j), n.energy, s.energy, n.yielding, s.yielding, Real(v.hz / v.hx)};
+}
+
+// Differences of the displacements around nodes: shear strains of the quadrants in units of 1 / hz.
+struct Differences {
+  Wide xw, xe, zs, zn;
+  Wide sw, se, nw, ne;  // shear
+};
+
+INLINE Differences differences(const Between& row, Index i) {
+  const Around& u = row.u;
+  const Wide x = load(u.x + i), z = load(u.z + i), xs = x - load(u.x_south + i), xn = load(u.x_north + i) - x;
+  const Wide zw = row.ratio * (z - load(u.z + i - 1)), ze = row.ratio * (load(u.z + i + 1) - z);
+  return {x - load(u.x + i - 1), load(u.x + i + 1) - x, z - load(u.z_south + i), load(u.z_north + i) - z, zw + xs, ze + xs, zw + xn, ze + xn};
+}
+
+struct Quarters {
+  Wide sw, se, nw, ne;
+};
+
+template <bool clips>
+INLINE Wide driving(Wide difference) {
+  return clips ? larger(difference, Wide{}) : difference;
+}
+
+INLINE Wide elastic_energy(const Between& row, const Differences& d) {
+  const Differenced &n = row.n, &s = row.s;
+  const Wide shear = s.c55 * (d.sw * d.sw + d.se * d.se) + n.c55 * (d.nw * d.nw + d.ne * d.ne);
+  return ((n.c11 + s.c11) * (d.xw * d.xw + d.xe * d.xe) + Real(2) * (n.c33 * (d.zn * d.zn) + s.c33 * (d.zs * d.zs))) +
+         ((d.xw + d.xe) * (n.c13 * d.zn + s.c13 * d.zs) + shear);
+}
+
+// The seed's drive (clipped normal strains, whole shear) or the whole energy.
+template <bool clips>
+INLINE Quarters elastic_drives(const Between& row, const Differences& d) {
+  const Differenced &n = row.n, &s = row.s;
+  const Wide xw = driving<clips>(d.xw), xe = driving<clips>(d.xe), zs = driving<clips>(d.zs), zn = driving<clips>(d.zn);
+  const Wide square_s = s.c33 * (zs * zs), square_n = n.c33 * (zn * zn), cross_s = s.c13 * zs, cross_n = n.c13 * zn;
+  return {xw * (s.c11 * xw + cross_s) + (square_s + s.c55 * (d.sw * d.sw)), xe * (s.c11 * xe + cross_s) + (square_s + s.c55 * (d.se * d.se)),
+          xw * (n.c11 * xw + cross_n) + (square_n + n.c55 * (d.nw * d.nw)), xe * (n.c11 * xe + cross_n) + (square_n + n.c55 * (d.ne * d.ne))};
+}
+
+INLINE Wide yield_form(const Yielding& law, Wide x, Wide z, Wide shear) {
   return (law.normal_x * (x * x) + law.normal_z * (z * z)) + (law.shear * (shear * shear) - law.cross * (x * z));
 }
 
-// What yielding takes from a quadrant.
+// p of the quadrants.
+INLINE Quarters yield_forms(const Between& row, const Differences& d) {
+  return {yield_form(row.below, d.xw, d.zs, d.sw), yield_form(row.below, d.xe, d.zs, d.se), yield_form(row.above, d.xw, d.zn, d.nw),
+          yield_form(row.above, d.xe, d.zn, d.ne)};
+}
+
+// What yielding takes from a quadrant, nothing where p <= 1; returns the secant factor.
 template <bool clips>
-INLINE void yield(const Yielding& law, Real x, Real z, Real shear, Real& drive, Real& stored, Real& reduction) {
-  const Real p = larger(yield_form(law, x, z, shear), Real(1)), r = Real(1) / std::sqrt(p), past = p * r - Real(1), lost = Real(1) - r;
-  drive -= law.drive * lost * (clips ? yield_form(law, driving<clips>(x), driving<clips>(z), shear) : p);
+INLINE Wide yield(const Yielding& law, Wide p, Wide x, Wide z, Wide shear, Wide& drive, Wide& stored) {
+  const Wide beyond = larger(p, all(Real(1))), r = Real(1) / root(beyond), past = beyond * r - Real(1), lost = Real(1) - r;
+  drive -= law.drive * lost * (clips ? yield_form(law, driving<clips>(x), driving<clips>(z), shear) : beyond);
   stored -= law.energy * (past * past);
-  reduction = Real(1) - law.soft * lost;
+  return Real(1) - law.soft * lost;
 }
 
 // Tiles that will yield before long do not rest: what they took up elastically past sigma_y the potential would not give back. Of p.
 constexpr Real near_yield = Real(0.5);
 
-// One tile on its way through the secant law.
-struct alignas(64) Tile {
-  Real sw[lanes], se[lanes], nw[lanes], ne[lanes], stored[lanes], most[lanes];
-};
+template <bool clips>
+INLINE void elastic_history(const View& v, int j) {
+  const Row row = row_of(v, j);
+  const Between at = between(v, j);
+  over_tiles(
+      v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
+        const Real share = nearer(v, flag);
+        for (Index i = tile; i < tile + lanes; i += width) {
+          const Differences d = differences(at, i);
+          const Quarters drives = elastic_drives<clips>(at, d);
+          commit(row, i, share, elastic_energy(at, d), drives.sw, drives.se, drives.nw, drives.ne);
+        }
+      });
+}
 
-// Tiles that may yield: elastic first, and those that yield once more. Of nodes that a crack holds nothing but the residual stiffness is
-// left, and an open crack's strain is no strain of the metal: they do not make a tile yield.
+// Where a row's secant factors are.
+struct Reductions {
+  Real *sw, *se, *nw, *ne;
+};
+INLINE void put(const Reductions& reduction, Index i, const Quarters& s) {
+  store(reduction.sw + i, s.sw), store(reduction.se + i, s.se), store(reduction.nw + i, s.nw), store(reduction.ne + i, s.ne);
+}
+
+// Flags of a tile. Of nodes that a crack holds nothing but the residual stiffness is left, and an open crack's strain is no strain of the
+// metal: they do not make a tile yield.
+INLINE unsigned char yielding_of(const View& v, const Between& at, const Real* whole, Index tile) {
+  bool yields = !v.tests_yield, nearly = false;
+  for (Index i = tile; i < tile + lanes; i += width) {
+    const Quarters p = yield_forms(at, differences(at, i));
+    const Wide most = load(whole + i) * larger(larger(p.sw, p.se), larger(p.nw, p.ne));
+    yields = yields || any_above(most, Real(1));
+    nearly = nearly || any_above(most, near_yield);
+  }
+  return yields ? does_yield : nearly ? nearly_yields : 0;
+}
+
+// A tile that may yield: elastic first, and once more where it does.
+template <bool clips>
+INLINE void secant_history(const Row& row, const Between& at, const Reductions& reduction, Index i, Real nearer, bool yields) {
+  const Differences d = differences(at, i);
+  Wide stored = elastic_energy(at, d);
+  Quarters drives = elastic_drives<clips>(at, d);
+  if (yields) {
+    const Quarters p = yield_forms(at, d);
+    const Wide sw = yield<clips>(at.below, p.sw, d.xw, d.zs, d.sw, drives.sw, stored);
+    const Wide se = yield<clips>(at.below, p.se, d.xe, d.zs, d.se, drives.se, stored);
+    const Wide nw = yield<clips>(at.above, p.nw, d.xw, d.zn, d.nw, drives.nw, stored);
+    const Wide ne = yield<clips>(at.above, p.ne, d.xe, d.zn, d.ne, drives.ne, stored);
+    put(reduction, i, {sw, se, nw, ne});
+  }
+  commit(row, i, nearer, stored, drives.sw, drives.se, drives.nw, drives.ne);
+}
+
 template <bool clips>
 INLINE void plastic_history(const View& v, int j) {
   const Row row = row_of(v, j);
-  const Around u = around(v, j);
-  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
-  const Yielding above = v.element_rows[j + 1].yielding, below = v.element_rows[j].yielding;
-  const Real ratio = Real(v.hz / v.hx);
-  const Index at = row_at(v, j);
-  const Real* whole = v.whole_nodes + at;
-  Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
-  Tile t;
+  const Between at = between(v, j);
+  const Index begin = row_at(v, j);
+  const Reductions reduction{v.reduction[0] + begin, v.reduction[1] + begin, v.reduction[2] + begin, v.reduction[3] + begin};
   over_tiles(
       v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
-        along_tile(
-            tile, TILE_BODY {
-              const Differences d = differences(u, i, ratio);
-              const Drives drives = elastic_drives<clips>(n, s, d, t.stored[l]);
-              t.sw[l] = drives.sw, t.se[l] = drives.se, t.nw[l] = drives.nw, t.ne[l] = drives.ne;
-              const Real p_south = larger(yield_form(below, d.xw, d.zs, d.sw), yield_form(below, d.xe, d.zs, d.se));
-              t.most[l] = whole[i] * larger(p_south, larger(yield_form(above, d.xw, d.zn, d.nw), yield_form(above, d.xe, d.zn, d.ne)));
-            });
-        const Real most = largest(t.most);
-        const bool yields = !v.tests_yield || most > Real(1);
-        if (yields)
-          along_tile(
-              tile, TILE_BODY {
-                const Differences d = differences(u, i, ratio);
-                yield<clips>(below, d.xw, d.zs, d.sw, t.sw[l], t.stored[l], r0[i]);
-                yield<clips>(below, d.xe, d.zs, d.se, t.se[l], t.stored[l], r1[i]);
-                yield<clips>(above, d.xw, d.zn, d.nw, t.nw[l], t.stored[l], r2[i]);
-                yield<clips>(above, d.xe, d.zn, d.ne, t.ne[l], t.stored[l], r3[i]);
-              });
-        else if (v.yields[flag] == does_yield)
-          along_tile(
-              tile, TILE_BODY { r0[i] = r1[i] = r2[i] = r3[i] = Real(1); });
-        v.yields[flag] = yields ? does_yield : most > near_yield ? nearly_yields : 0;
+        const Wide one = all(Real(1));
+        const unsigned char before = v.yields[flag], now = yielding_of(v, at, v.whole_nodes + begin, tile);
         const Real share = nearer(v, flag);
-        along_tile(
-            tile, TILE_BODY { commit(row, i, share, t.stored[l], t.sw[l], t.se[l], t.nw[l], t.ne[l]); });
+        for (Index i = tile; i < tile + lanes; i += width) {
+          secant_history<clips>(row, at, reduction, i, share, now == does_yield);
+          if (before == does_yield && now != does_yield) put(reduction, i, {one, one, one, one});
+        }
+        v.yields[flag] = now;
       });
 }
 
@@ -209,26 +250,35 @@ double history(const View& v, int j) {
   return kept;
 }
 
+namespace {
+
+// (q / sigma_y - 1)^2 past yield.
+INLINE Wide square_past(Wide p) {
+  const Wide past = root(larger(p, all(Real(1)))) - Real(1);
+  return past * past;
+}
+
+}  // namespace
+
 // The potential of the secant law is the elastic one where p <= 1.
 double elastic_energy(const View& v, int j) {
-  const Around u = around(v, j);
-  const Differenced n = v.element_rows[j + 1].energy, s = v.element_rows[j].energy;
-  const Yielding above = v.element_rows[j + 1].yielding, below = v.element_rows[j].yielding;
-  const Real ratio = Real(v.hz / v.hx), *g = v.degradation + row_at(v, j), *weight = v.column_weight;
-  const auto lost = [](const Yielding& law, Real x, Real z, Real shear) __attribute__((always_inline)) {
-    const Real past = std::sqrt(larger(yield_form(law, x, z, shear), Real(1))) - Real(1);
-    return law.energy * (past * past);
-  };
+  const Between at = between(v, j);
+  const Real *g = v.degradation + row_at(v, j), *weight = v.column_weight;
+  const bool plastic = v.element_rows[j + 1].plastic || v.element_rows[j].plastic;
   Partial energy;
-  along_tiles(
-      v.padded, TILE_BODY {
-        const Differences d = differences(u, i, ratio);
-        Real stored;
-        elastic_drives<false>(n, s, d, stored);
-        stored -= (lost(below, d.xw, d.zs, d.sw) + lost(below, d.xe, d.zs, d.se)) +
-                  (lost(above, d.xw, d.zn, d.nw) + lost(above, d.xe, d.zn, d.ne));
-        energy.at[l] += weight[i] * g[i] * stored;
-      });
+  for (Index part = 0; part < lanes; part += width) {
+    Wide sum{};
+    for (Index i = part; i < v.padded; i += lanes) {
+      const Differences d = differences(at, i);
+      Wide stored = elastic_energy(at, d);
+      if (plastic) {
+        const Quarters p = yield_forms(at, d);
+        stored -= at.below.energy * (square_past(p.sw) + square_past(p.se)) + at.above.energy * (square_past(p.nw) + square_past(p.ne));
+      }
+      sum += load(weight + i) * load(g + i) * stored;
+    }
+    store(energy.at + part, sum);
+  }
   return v.corner_area * ordered_sum(energy);
 }
 

@@ -18,20 +18,27 @@ void drift(const View& v, int j, Real dt) {
 
 namespace {
 
+// body(i) along the tiles of a row whose flag is at least `least`.
+template <class Body>
+INLINE void along_giving(const View& v, int j, unsigned char least, const Body& body) {
+  const unsigned char* gives = v.gives + Index(j) * v.tiles;
+  for (Index t = 0; t < v.tiles; ++t)
+    if (gives[t] >= least) along_tile(t * lanes, body);
+}
+
 // What the half edges of the rows j - 1 to j + 1 add to the force of row j.
 INLINE void add_half_edges(const View& v, int j, Real* fx, Real* fz) {
   const HalfEdges here = half_edges(v, j), above = half_edges(v, j + 1), below = half_edges(v, j - 1);
-  along_run(
-      v.half_edges[j], TILE_BODY { fx[i] += here.part_x[i], fz[i] += here.part_z[i]; });
-  along_run(
-      v.half_edges[j + 1], TILE_BODY { fx[i] += above.south_x[i], fz[i] += above.south_z[i]; });
-  along_run(
-      v.half_edges[j - 1], TILE_BODY { fx[i] -= below.north_x[i], fz[i] -= below.north_z[i]; });
+  along_giving(
+      v, j, gives_parts, TILE_BODY { fx[i] += here.part_x[i], fz[i] += here.part_z[i]; });
+  along_giving(
+      v, j + 1, gives_all, TILE_BODY { fx[i] += above.south_x[i], fz[i] += above.south_z[i]; });
+  along_giving(
+      v, j - 1, gives_all, TILE_BODY { fx[i] -= below.north_x[i], fz[i] -= below.north_z[i]; });
 }
 
-}  // namespace
-
-void kick(const View& v, int j, Real dt, Sums& sums) {
+// Any row.
+INLINE void kick_row(const View& v, int j, Real dt, Sums& sums) {
   const Index at = row_at(v, j);
   const bool stores = v.keeps_forces || j == 0 || j == v.rows - 1;
   Real *fx = stores ? v.fx + at : scratch_row(v, first_free_row), *fz = stores ? v.fz + at : scratch_row(v, first_free_row + 1);
@@ -50,15 +57,26 @@ void kick(const View& v, int j, Real dt, Sums& sums) {
   const Real *mx = v.inverse_mass_x[j], *mz = v.inverse_mass_z[j];
   const Real* weight = v.column_weight;
   Partial energy;
-  along_tiles(
-      v.padded, TILE_BODY {
-        const Real x = vx[i] + dt * (fx[i] * mx[i]), z = vz[i] + dt * (fz[i] * mz[i]);
-        const Real mean_x = vx[i] + x, mean_z = vz[i] + z;
-        energy.at[l] += weight[i] * (mean_x * mean_x + mean_z * mean_z);
-        vx[i] = x;
-        vz[i] = z;
-      });
+  for (Index part = 0; part < lanes; part += width) {
+    Wide sum{};
+    for (Index i = part; i < v.padded; i += lanes) {
+      const Wide before_x = load(vx + i), before_z = load(vz + i);
+      const Wide x = before_x + dt * (load(fx + i) * load(mx + i)), z = before_z + dt * (load(fz + i) * load(mz + i));
+      const Wide mean_x = before_x + x, mean_z = before_z + z;
+      sum += load(weight + i) * (mean_x * mean_x + mean_z * mean_z);
+      store(vx + i, x), store(vz + i, z);
+    }
+    store(energy.at + part, sum);
+  }
   add(sums.kinetic, energy, 0.125 * double(v.node_rows[j].mass));
+}
+
+}  // namespace
+
+void kick(const View& v, int first, int end, Real dt, Sums& sums) {
+  const bool pulled = v.node_force_begin[first] < v.node_force_begin[end];
+  if (v.node_rows[first].amid && is_elastic(v.law) && !pulled) return kick_strip(v, first, end, dt, sums);
+  for (int j = first; j < end; ++j) kick_row(v, j, dt, sums);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -8,19 +8,16 @@
 #include "solver/law/splits.hpp"
 #include "solver/phasefield/grid.hpp"
 #include "solver/phasefield/kernels.hpp"
-
-#define INLINE [[gnu::always_inline]] inline
+#include "solver/phasefield/kernels/wide.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_KERNELS {
 
-using Real = FRACFARM_REAL;
 using View = phasefield::View<Real>;
 using ElementRow = phasefield::ElementRow<Real>;
 using NodeRow = phasefield::NodeRow<Real>;
 using Stiffness = law::Stiffness<Real>;
 using Strain = law::Strain<Real>;
 using Stress = law::Stress<Real>;
-using Index = long;
 
 INLINE Index row_at(const View& v, int j) { return Index(j) * v.stride; }
 INLINE Real larger(Real a, Real b) { return a > b ? a : b; }
@@ -46,13 +43,6 @@ INLINE void along_row(Index n, const Body& body) {
 
 // The same by tiles of `lanes` nodes, for bodies that sum: body(i, l) with l the node's number in its tile. Loops of just as many turns as
 // an instruction has numbers become straight code.
-#if defined(__AVX512F__)
-inline constexpr Index width = 64 / sizeof(Real);
-#elif defined(__AVX__)
-inline constexpr Index width = 32 / sizeof(Real);
-#else
-inline constexpr Index width = 16 / sizeof(Real);
-#endif
 template <class Body>
 INLINE void along_tile(Index tile, const Body& body) {
   for (Index part = 0; part < lanes; part += width) {
@@ -132,14 +122,15 @@ INLINE double ordered_sum(const Real* __restrict x, Index n) {
 INLINE Real* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
 
 // What the quadrants of node row j give to the forces, kept until the rows around it are kicked: `north` and `south` act on the edges to
-// the rows above and below, `part` is the rest of the row's own force. Four rows of it go round.
+// the rows above and below, `part` is the rest of the row's own force. The rows of a strip and those around it go round.
 struct HalfEdges {
   Real *north_x, *north_z, *south_x, *south_z, *part_x, *part_z;
 };
-inline constexpr int half_edge_rows = 6, first_free_row = 4 * half_edge_rows;
+inline constexpr int half_edge_rows = 6, half_edge_places = strip_rows + 3, first_free_row = half_edge_places * half_edge_rows;
+static_assert(first_free_row + 6 <= scratch_rows);
 
 INLINE HalfEdges half_edges(const View& v, int j) {
-  const int k = ((j + 4) % 4) * half_edge_rows;
+  const int k = ((j + half_edge_places) % half_edge_places) * half_edge_rows;
   return {scratch_row(v, k),     scratch_row(v, k + 1), scratch_row(v, k + 2),
           scratch_row(v, k + 3), scratch_row(v, k + 4), scratch_row(v, k + 5)};
 }
@@ -149,6 +140,9 @@ INLINE bool is_elastic(RowLaw law) { return law == RowLaw::seed || law == RowLaw
 
 // Internal force of the row's nodes with linear elastic quadrants; needs u and g of the rows j - 1 to j + 1.
 void elastic_forces(const View& v, int j, Real* fx, Real* fz, Sums& sums);
+
+// kick() of rows among elements of one kind without tractions, with a law that is_elastic().
+void kick_strip(const View& v, int first, int end, Real dt, Sums& sums);
 
 // Laws of the general rows, made of an element row's constants.
 template <class Law>

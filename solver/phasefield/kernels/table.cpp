@@ -11,8 +11,9 @@ double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool l
 double settle(const View&, int j, Real* psi);
 void rest(const View&, int j, const Real* psi, Real* previous, Real* other);
 double elastic_energy(const View&, int j);
-void force(const View&, int j, const Real* psi, const Real* before, Sums&);
-void kick(const View&, int j, Real dt, Sums&);
+void degrade(const View&, int j, const Real* psi, const Real* before, Sums&);
+void force(const View&, int j, Sums&);
+void kick(const View&, int first, int end, Real dt, Sums&);
 SurfaceSum surface(const View&, int j, const Real* psi);
 
 #define FRACFARM_TEXT_OF(name) #name
@@ -20,6 +21,6 @@ SurfaceSum surface(const View&, int j, const Real* psi);
 
 extern const Kernels<Real> table;
 const Kernels<Real> table{
-    FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, rest, elastic_energy, force, kick, surface};
+    FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, rest, elastic_energy, degrade, force, kick, surface};
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS
