@@ -85,9 +85,9 @@ struct View {
   bool tests_yield;      // tiles that may yield are tested; else all of them run the secant law
   const int* run_begin;  // the tiles of row j that are worked on: runs[run_begin[j]] to runs[run_begin[j + 1]]
   const Run* runs;
-  Real moved_damage;                     // a tile moves that (nearly) yields, or whose psi changes by more than this in rest_steps steps
+  Real moved_damage;                     // a tile moves whose psi changes by more than this in rest_steps steps
   unsigned char* moves;                  // by tile [j tiles + t], t a group of `lanes` nodes; what it is for: see passes.hpp
-  unsigned char* yields;                 // by tile: does_yield where the secant law ran when it was last worked on
+  unsigned char* yields;                 // by tile: does_yield or nearly_yields, as of the last step that looked
   const ElementRow<Real>* element_rows;  // [j] is below node row j, [j + 1] above it
   const NodeRow<Real>* node_rows;        // [j]
   const Real* column_weight;             // 1 inside, 1/2 at the sides, 0 in the pad
@@ -99,7 +99,6 @@ struct View {
   const Real* whole_nodes;          // 0 at pinned nodes and in the pad, else 1
   Real *ux, *uz, *vx, *vz;          // m, m/s (half a step ahead)
   Real* history[4];                 // H in the quadrants, J/m^3
-  Real* reduction[4];               // secant factor s in the quadrants
   Real *source, *inverse_diagonal;  // of the psi equation
   Real *stored, *stored_before;     // undegraded energy that damage can release, summed over the quadrants, J/m^3, when a tile was last
                                     // worked on, and a step before that
@@ -109,10 +108,10 @@ struct View {
   Real* scratch;                    // scratch_rows rows of one thread
 };
 inline constexpr int scratch_rows = 150;
-inline constexpr int strip_rows = 21;  // that are kicked together, at most
+inline constexpr int strip_rows = 21;                                              // that are kicked together, at most
 inline constexpr unsigned char gives_nothing = 0, gives_parts = 1, gives_all = 2;  // parts: to the row itself only
-inline constexpr unsigned char does_yield = 1, nearly_yields = 2;  // flags of a tile
-inline constexpr int rest_steps = 4;  // a whole step and the light ones after it
+inline constexpr unsigned char does_yield = 1, nearly_yields = 2;                  // flags of a tile
+inline constexpr int rest_steps = 4;                                               // a whole step and the light ones after it
 
 // A sum over nodes, in parts: number l of each tile goes to part l.
 struct alignas(64) Parts {
@@ -142,6 +141,8 @@ struct Kernels {
   // H = max(H, drive(epsilon)), energies, and the row of the psi equation, whose pins are held; returns the kept energy, J/m. Needs u of
   // the rows j - 1 to j + 1. Of tiles that are worked on, as all that follows but kick() and surface().
   double (*history)(const View<Real>&, int j);
+  // The row of the psi equation from H as it is: history() keeps it up to date from then on.
+  void (*equation)(const View<Real>&, int j);
   // True where psi of the row's equation could rise above that of H = 0 by more than `bound` (pinned nodes apart).
   bool (*damages)(const View<Real>&, int j, Real bound);
   // previous = 2 psi - previous within [0, 1].

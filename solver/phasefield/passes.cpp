@@ -194,6 +194,12 @@ void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, cons
 }
 
 template <class Real>
+void set_equation(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  for (int j = 0; j < v.rows; ++j) kernels.equation(v, j);
+}
+
+template <class Real>
 Result<void> solve_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
   const View<Real> v = view(model, state, scratch);
   const std::size_t at = model.grid.origin();
@@ -241,6 +247,7 @@ SurfaceSum surface(const Model& model, State<Real>& state, Scratch<Real>& scratc
 
 #define FRACFARM_INSTANTIATE(Real)                                                                                            \
   template Result<void> move_and_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, long long, double); \
+  template void set_equation(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                               \
   template void strain(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                                     \
   template Result<void> solve_damage(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&);                       \
   template StepSums respond(const Model&, State<Real>&, Scratch<Real>&, const Kernels<Real>&, double);                        \

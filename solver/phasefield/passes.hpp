@@ -21,7 +21,11 @@ template <class Real>
 Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n,
                              double dt);
 
-// Energies and the psi equation of u as it is.
+// The psi equation of H as it is; for a start.
+template <class Real>
+void set_equation(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
+
+// H, energies and the psi equation of u as it is.
 template <class Real>
 void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
 

@@ -158,7 +158,6 @@ void PhaseField<Real>::save(ArchiveWriter& archive) const {
   for (const Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
     archive.put_array(*field);
   for (const Field<Real>& field : state_.history) archive.put_array(field);
-  for (const Field<Real>& field : state_.reduction) archive.put_array(field);
   archive.put_array(state_.stored);
   for (const std::vector<unsigned char>* flags : {&state_.moves, &state_.yields}) archive.put_array(*flags);
   for (const double value : {state_.external_work, state_.released, state_.initial_energy, state_.initial_surface}) archive.put(value);
@@ -173,7 +172,6 @@ bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
   for (Field<Real>* field : {&state_.ux, &state_.uz, &state_.vx, &state_.vz, &state_.psi, &state_.psi_previous})
     archive.get_array_like(*field);
   for (Field<Real>& field : state_.history) archive.get_array_like(field);
-  for (Field<Real>& field : state_.reduction) archive.get_array_like(field);
   archive.get_array_like(state_.stored);
   for (std::vector<unsigned char>* flags : {&state_.moves, &state_.yields}) archive.get_array_like(*flags);
   for (double* value : {&state_.external_work, &state_.released, &state_.initial_energy, &state_.initial_surface})

@@ -131,7 +131,6 @@ State<Real> make_state(const Model& model) {
   State<Real> state;
   for (Field<Real>* field : {&state.ux, &state.uz, &state.vx, &state.vz, &state.psi, &state.psi_previous}) *field = zero;
   state.history.fill(zero);
-  state.reduction.fill(grid.field<Real>(Real(1)));
   state.stored = zero;
   const std::size_t tiles = static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.tiles());
   state.moves.assign(tiles, 1), state.yields.assign(tiles, 0);
@@ -203,7 +202,7 @@ View<Real> view(const Model& model, State<Real>& state, Scratch<Real>& scratch) 
   v.pin_begin = tables.pin_begin.data(), v.pins = tables.pins.data();
   v.node_force_begin = tables.node_force_begin.data(), v.node_forces = tables.node_forces.data();
   v.ux = state.ux.data() + at, v.uz = state.uz.data() + at, v.vx = state.vx.data() + at, v.vz = state.vz.data() + at;
-  for (std::size_t k = 0; k < 4; ++k) v.history[k] = state.history[k].data() + at, v.reduction[k] = state.reduction[k].data() + at;
+  for (std::size_t k = 0; k < 4; ++k) v.history[k] = state.history[k].data() + at;
   v.source = scratch.source.data() + at, v.inverse_diagonal = scratch.inverse_diagonal.data() + at;
   v.stored = state.stored.data() + at, v.stored_before = scratch.stored_before.data() + at;
   v.degradation = scratch.degradation.data() + at;

@@ -28,7 +28,6 @@ struct State {
   Field<Real> vx, vz;                        // m/s, half a step ahead of the displacements
   std::array<Field<Real>, 4> history;        // H in the quadrants sw se nw ne of each node, J/m^3; see set_history
   Field<Real> psi, psi_previous;             // of this step and the one before (its extrapolation starts the next solve)
-  std::array<Field<Real>, 4> reduction;      // secant factor s in the quadrants
   Field<Real> stored;                        // see View
   std::vector<unsigned char> moves, yields;  // by tile, see View
   bool whole = true;                         // the last step worked on all tiles
@@ -68,7 +67,7 @@ template <class Real>
 struct Scratch {
   Tables<Real> tables;
   std::vector<unsigned char> gives;  // see View; from row -1 on
-  RunList moving;               // tiles that light steps work on
+  RunList moving;                    // tiles that light steps work on
   Field<Real> source, inverse_diagonal, stored_before, degradation, fx, fz, psi_other;
   Field<Real> rows;                           // scratch_rows rows for the kernels
   std::vector<double> held_force;             // force on held nodes before the step, in the order of the motions

@@ -97,6 +97,7 @@ template <class Real>
 Result<void> start(const Model& model, const Initial& initial, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels,
                    double dt) {
   set_initial_fields(model, initial, state);
+  set_equation(model, state, scratch, kernels);
   strain(model, state, scratch, kernels);
   if (auto solved = solve_damage(model, state, scratch, kernels); !solved) return solved;
   state.psi_previous = state.psi;
@@ -134,6 +135,7 @@ template <class Real>
 void refresh(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n, double dt) {
   find_moving(model.grid, state, scratch);
   scratch.psi_other = state.psi;  // of tiles that rest
+  set_equation(model, state, scratch, kernels);
   pull(model, scratch, static_cast<double>(n) * dt);
   const bool whole = std::exchange(state.whole, true);  // g of all nodes
   respond(model, state, scratch, kernels, 0.0);

@@ -66,7 +66,7 @@ void rest(const View& v, int j, const Real* psi, Real* previous, Real* other) {
     Partial change;
     along_tile(
         tile, TILE_BODY { change.at[l] = whole[i] * std::abs(now[i] - before[i]); });
-    v.moves[flag] = v.yields[flag] || largest(change.at) > (v.moves[flag] ? v.moved_damage / Real(rest_steps) : v.moved_damage);
+    v.moves[flag] = largest(change.at) > (v.moves[flag] ? v.moved_damage / Real(rest_steps) : v.moved_damage);
     if (!v.moves[flag])
       along_tile(
           tile, TILE_BODY { before[i] = spare[i] = now[i]; });

@@ -1,7 +1,7 @@
 // Degradation, what it releases, and the internal force f = -B^T sigma of all that is not linear elastic (elastic.cpp), from the quadrants
 // of one row of nodes at a time.
 #include "solver/law/degradation.hpp"
-#include "solver/phasefield/kernels/rows.hpp"
+#include "solver/phasefield/kernels/quadrants.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_KERNELS {
 namespace {
@@ -47,6 +47,10 @@ void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& su
 
 namespace {
 
+struct WideStress {
+  Wide xx, zz, xz;
+};
+
 // Any law: from the stress of each quadrant, g degraded + kept.
 class QuadrantForces {
  public:
@@ -54,42 +58,51 @@ class QuadrantForces {
       : rows_(rows), out_(out), weight_(v.column_weight), x_(Real(v.corner_area / v.hx)), z_(Real(v.corner_area / v.hz)) {}
 
   INLINE void add(Index i, Stress sw, Stress se, Stress nw, Stress ne) const {
-    const Real z = weight_[i] * z_, east = x_ * (ne.xx + se.xx), west = x_ * (nw.xx + sw.xx);
-    const Real north = z * (ne.zz + nw.zz), south = z * (se.zz + sw.zz);
-    rows_.east_x[i] = east;
-    rows_.west_x[i] = west;
-    rows_.east_z[i] = x_ * (ne.xz + se.xz);
-    rows_.west_z[i] = x_ * (nw.xz + sw.xz);
-    out_.north_z[i] = north;
-    out_.south_z[i] = south;
-    out_.north_x[i] = z * (ne.xz + nw.xz);
-    out_.south_x[i] = z * (se.xz + sw.xz);
-    rows_.stress_xx[i] = weight_[i] * (east + west);
-    rows_.stress_zz[i] = north + south;
+    add(i, weight_[i], sw, se, nw, ne, [](Real& to, Real value) { to = value; });
+  }
+  INLINE void add(Index i, const WideStress& sw, const WideStress& se, const WideStress& nw, const WideStress& ne) const {
+    add(i, load(weight_ + i), sw, se, nw, ne, [](Real& to, Wide value) { store(&to, value); });
   }
 
  private:
+  template <class Number, class Quadrant, class Put>
+  INLINE void add(Index i, Number weight, const Quadrant& sw, const Quadrant& se, const Quadrant& nw, const Quadrant& ne,
+                  const Put& put) const {
+    const Number z = weight * z_, east = x_ * (ne.xx + se.xx), west = x_ * (nw.xx + sw.xx);
+    const Number north = z * (ne.zz + nw.zz), south = z * (se.zz + sw.zz);
+    put(rows_.east_x[i], east);
+    put(rows_.west_x[i], west);
+    put(rows_.east_z[i], x_ * (ne.xz + se.xz));
+    put(rows_.west_z[i], x_ * (nw.xz + sw.xz));
+    put(out_.north_z[i], north);
+    put(out_.south_z[i], south);
+    put(out_.north_x[i], z * (ne.xz + nw.xz));
+    put(out_.south_x[i], z * (se.xz + sw.xz));
+    put(rows_.stress_xx[i], weight * (east + west));
+    put(rows_.stress_zz[i], north + south);
+  }
+
   Rows rows_;
   HalfEdges out_;
   const Real* weight_;
   Real x_, z_;
 };
 
-// body(first node) for the tiles of a row that give something.
+// body(first node, tile) for the tiles of a row that give as said.
 template <class Body>
-INLINE void over_giving(const View& v, const unsigned char* gives, const Body& body) {
+INLINE void over_giving(const View& v, const unsigned char* gives, unsigned char what, const Body& body) {
   for (Index t = 0; t < v.tiles; ++t)
-    if (gives[t] != gives_nothing) body(t * lanes, t);
+    if (gives[t] == what) body(t * lanes, t);
 }
 
-// Beside the tiles that give nothing acts; outside the sides the inner quadrants are mirrored.
+// Beside the tiles that give all nothing acts; outside the sides the inner quadrants are mirrored.
 INLINE void close_ends(const View& v, const unsigned char* gives, const Rows& rows) {
   const Index last = v.columns - 1;
   over_giving(
-      v, gives, [&](Index tile, Index t) __attribute__((always_inline)) {
+      v, gives, gives_all, [&](Index tile, Index t) __attribute__((always_inline)) {
         const Index end = tile + lanes;
-        if (t == 0 || gives[t - 1] == gives_nothing) rows.east_x[tile - 1] = rows.east_z[tile - 1] = Real(0);
-        if (t + 1 == v.tiles || gives[t + 1] == gives_nothing) rows.west_x[end] = rows.west_z[end] = Real(0);
+        if (t == 0 || gives[t - 1] != gives_all) rows.east_x[tile - 1] = rows.east_z[tile - 1] = Real(0);
+        if (t + 1 == v.tiles || gives[t + 1] != gives_all) rows.west_x[end] = rows.west_z[end] = Real(0);
         if (t == 0) rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
         if (end > last) rows.west_x[last + 1] = -rows.east_x[last], rows.west_z[last + 1] = -rows.east_z[last];
       });
@@ -99,7 +112,7 @@ INLINE void finish_quadrants(const View& v, const unsigned char* gives, const Ro
   close_ends(v, gives, rows);
   Partial xx, zz;
   over_giving(
-      v, gives, [&](Index tile, Index) __attribute__((always_inline)) {
+      v, gives, gives_all, [&](Index tile, Index) __attribute__((always_inline)) {
         along_tile(
             tile, TILE_BODY {
               out.part_x[i] =
@@ -114,36 +127,47 @@ INLINE void finish_quadrants(const View& v, const unsigned char* gives, const Ro
   add(sums.stress_zz, zz, v.hz);
 }
 
-// What yielding takes from the elastic stress: the share 1 - s of mu, the bulk modulus kept.
-INLINE Stress yielded_stress(Real mu, Real g, Real s, Strain e) {
-  const Real lost = g * ((Real(1) - s) * mu), third = Real(2.0 / 3.0) * lost;
-  return {third * (e.zz - Real(2) * e.xx), third * (e.xx - Real(2) * e.zz), -(lost * e.xz)};
+// The nodes next to tiles that give all.
+INLINE void give_parts(const View& v, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
+  over_giving(
+      v, gives, gives_parts, [&](Index tile, Index t) __attribute__((always_inline)) {
+        const Index last = tile + lanes - 1;
+        along_tile(
+            tile, TILE_BODY { out.part_x[i] = out.part_z[i] = Real(0); });
+        if (t > 0 && gives[t - 1] == gives_all) out.part_x[tile] = -rows.east_x[tile - 1], out.part_z[tile] = -rows.east_z[tile - 1];
+        if (t + 1 < v.tiles && gives[t + 1] == gives_all)
+          out.part_x[last] = rows.west_x[last + 1], out.part_z[last] = rows.west_z[last + 1];
+      });
 }
 
-INLINE Real secant_mu(const ElementRow& row) { return row.plastic ? row.stiffness.C55 : Real(0); }
+// What yielding takes from the elastic stress: the share 1 - s of mu, the bulk modulus kept. `mu` is g times the part of mu that is lost
+// where r = 0.
+INLINE WideStress yielded_stress(Wide mu, Wide p, Wide xx, Wide zz, Wide xz) {
+  const Wide lost = mu * (Real(1) - yield_over_q(p)), third = Real(2.0 / 3.0) * lost;
+  return {third * (zz - Real(2) * xx), third * (xx - Real(2) * zz), -(lost * xz)};
+}
 
-INLINE void yielded_force(const View& v, int j, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
-  const Around u = around(v, j);
-  const Real n = secant_mu(v.element_rows[j + 1]), s = secant_mu(v.element_rows[j]);
-  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
-  const Index at = row_at(v, j);
-  const Real *r0 = v.reduction[0] + at, *r1 = v.reduction[1] + at, *r2 = v.reduction[2] + at, *r3 = v.reduction[3] + at;
+// Tiles that yielded, or nearly, when last worked on. A light step leaves their flags so that they are looked at again.
+INLINE void yielded_force(const View& v, int j, unsigned char* gives, const Rows& rows, const HalfEdges& out) {
+  const Between at = between(v, j);
+  const Real n = at.above.soft * v.element_rows[j + 1].stiffness.C55, s = at.below.soft * v.element_rows[j].stiffness.C55;
+  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz), *whole = v.whole_nodes + row_at(v, j);
   const QuadrantForces forces(v, rows, out);
-  const Real* degradation = rows.g;
-  over_giving(
-      v, gives, [&](Index tile, Index t) __attribute__((always_inline)) {
-        if (gives[t] == gives_all)
-          along_tile(
-              tile, TILE_BODY {
-                const Quadrants e = strains(u, i, per_hx, per_hz);
-                const Real g = degradation[i];
-                forces.add(i, yielded_stress(s, g, r0[i], e.sw), yielded_stress(s, g, r1[i], e.se), yielded_stress(n, g, r2[i], e.nw),
-                           yielded_stress(n, g, r3[i], e.ne));
-              });
-        else
-          along_tile(
-              tile, TILE_BODY { forces.add(i, {}, {}, {}, {}); });
-      });
+  unsigned char* yields = v.yields + Index(j) * v.tiles;
+  for (Index t = 0; t < v.tiles; ++t) {
+    gives[t] = gives_nothing;
+    if (!yields[t]) continue;
+    yields[t] = yielding_of(v, at, whole, t * lanes) == does_yield ? does_yield : nearly_yields;
+    if (yields[t] != does_yield) continue;
+    gives[t] = gives_all;
+    for (Index i = t * lanes; i < (t + 1) * lanes; i += width) {
+      const Differences d = differences(at, i);
+      const Quarters p = yield_forms(at, d);
+      const Wide g = load(rows.g + i), xw = per_hx * d.xw, xe = per_hx * d.xe, zs = per_hz * d.zs, zn = per_hz * d.zn;
+      forces.add(i, yielded_stress(s * g, p.sw, xw, zs, per_hz * d.sw), yielded_stress(s * g, p.se, xe, zs, per_hz * d.se),
+                 yielded_stress(n * g, p.nw, xw, zn, per_hz * d.nw), yielded_stress(n * g, p.ne, xe, zn, per_hz * d.ne));
+    }
+  }
 }
 
 template <class Law>
@@ -167,20 +191,9 @@ INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges&
       });
 }
 
-// Tiles that yield give all, those beside them their parts at these edges; splits give everywhere. True where a tile gives.
-INLINE bool find_giving(const View& v, int j, unsigned char* gives) {
-  const unsigned char* yields = v.yields + Index(j) * v.tiles;
-  const auto gives_all_of = [&](Index t) { return t >= 0 && t < v.tiles && (!is_elastic(v.law) || yields[t] == does_yield); };
-  bool found = false;
-  for (Index t = 0; t < v.tiles; ++t) {
-    gives[t] = gives_all_of(t) ? gives_all : gives_all_of(t - 1) || gives_all_of(t + 1) ? gives_parts : gives_nothing;
-    found = found || gives[t] != gives_nothing;
-  }
-  return found;
-}
-
 // The law is chosen once for a row.
-INLINE void quadrant_forces(const View& v, int j, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
+INLINE void quadrant_forces(const View& v, int j, unsigned char* gives, const Rows& rows, const HalfEdges& out) {
+  for (Index t = 0; t < v.tiles; ++t) gives[t] = gives_all;
   switch (v.law) {
     case RowLaw::seed:
     case RowLaw::none:
@@ -192,15 +205,28 @@ INLINE void quadrant_forces(const View& v, int j, const unsigned char* gives, co
   }
 }
 
+// Tiles beside those that give all take a part at the edges between. True where a tile gives.
+INLINE bool find_parts(const View& v, unsigned char* gives) {
+  bool found = false;
+  for (Index t = 0; t < v.tiles; ++t) {
+    if (gives[t] != gives_all) continue;
+    found = true;
+    if (t > 0 && gives[t - 1] == gives_nothing) gives[t - 1] = gives_parts;
+    if (t + 1 < v.tiles && gives[t + 1] == gives_nothing) gives[t + 1] = gives_parts;
+  }
+  return found;
+}
+
 }  // namespace
 
 void force(const View& v, int j, Sums& sums) {
   unsigned char* gives = v.gives + Index(j) * v.tiles;
-  if (!find_giving(v, j, gives)) return;
   const Rows rows = rows_of(v, j);
   const HalfEdges out = half_edges(v, j);
   quadrant_forces(v, j, gives, rows, out);
+  if (!find_parts(v, gives)) return;
   finish_quadrants(v, gives, rows, out, sums);
+  give_parts(v, gives, rows, out);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -1,6 +1,6 @@
 // Forces and velocities of a strip: rows of nodes among elements of one kind. The internal force of linear elastic quadrants,
-// f = -B^T g C epsilon, is gathered from the nine nodes around: the four quadrants of a node share its g, so that sums over them collapse to
-// differences. Neighbouring rows share most of these.
+// f = -B^T g C epsilon, is gathered from the nine nodes around: the four quadrants of a node share its g, so that sums over them collapse
+// to differences. Neighbouring rows share most of these.
 #include "solver/phasefield/kernels/rows.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_KERNELS {

@@ -5,6 +5,7 @@ namespace fracfarm::phasefield::FRACFARM_KERNELS {
 
 void drift(const View&, int j, Real dt);
 double history(const View&, int j);
+void equation(const View&, int j);
 bool damages(const View&, int j, Real bound);
 void guess(const View&, int j, const Real* psi, Real* previous);
 double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool last);
@@ -20,7 +21,19 @@ SurfaceSum surface(const View&, int j, const Real* psi);
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
 
 extern const Kernels<Real> table;
-const Kernels<Real> table{
-    FRACFARM_TEXT(FRACFARM_ISA), drift, history, damages, guess, sweep, settle, rest, elastic_energy, degrade, force, kick, surface};
+const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA),
+                          drift,
+                          history,
+                          equation,
+                          damages,
+                          guess,
+                          sweep,
+                          settle,
+                          rest,
+                          elastic_energy,
+                          degrade,
+                          force,
+                          kick,
+                          surface};
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -1,5 +1,5 @@
-// The numbers of one instruction, for loops that keep them in registers; arithmetic is by number and gives the same bits whatever the width.
-// Included by the kernels only.
+// The numbers of one instruction, for loops that keep them in registers; arithmetic is by number and gives the same bits whatever the
+// width. Included by the kernels only.
 #pragma once
 
 #include <cmath>
