@@ -107,9 +107,9 @@ struct View {
   Real *fx, *fz;                    // internal force and tractions, N/m
   Real* scratch;                    // scratch_rows rows of one thread
 };
-inline constexpr int scratch_rows = 150;
+inline constexpr int scratch_rows = 243;
 inline constexpr int strip_rows = 21;                                              // that are kicked together, at most
-inline constexpr unsigned char gives_nothing = 0, gives_parts = 1, gives_all = 2;  // parts: to the row itself only
+inline constexpr unsigned char gives_nothing = 0, gives_parts = 1, gives_all = 2;  // parts: at the ends, what the tile beside gives
 inline constexpr unsigned char does_yield = 1, nearly_yields = 2;                  // flags of a tile
 inline constexpr int rest_steps = 4;                                               // a whole step and the light ones after it
 

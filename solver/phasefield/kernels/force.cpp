@@ -4,24 +4,6 @@
 #include "solver/phasefield/kernels/quadrants.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_KERNELS {
-namespace {
-
-// Rows of the work on one row of nodes.
-struct Rows {
-  const Real* g;                // degradation
-  Real *east_x, *east_z;        // on the edges to the right
-  Real *west_x, *west_z;        // on the edges to the left
-  Real *stress_xx, *stress_zz;  // summed over the quadrants
-};
-
-INLINE Rows rows_of(const View& v, int j) {
-  const int k = first_free_row;
-  return {v.degradation + row_at(v, j), scratch_row(v, k),     scratch_row(v, k + 1), scratch_row(v, k + 2),
-          scratch_row(v, k + 3),        scratch_row(v, k + 4), scratch_row(v, k + 5)};
-}
-
-}  // namespace
-
 // What a node releases in a step: (g_n - g_n+1) sqrt(W_n W_n+1). The scheme itself exchanges 1/2 eps_n : C : eps_n+1 there, which this is
 // where the strain grows in proportion; the arithmetic mean left the ledger four times as open (0.23 % against 0.06 % in shale).
 void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& sums) {
@@ -51,123 +33,107 @@ struct WideStress {
   Wide xx, zz, xz;
 };
 
-// Any law: from the stress of each quadrant, g degraded + kept.
+INLINE void put(Real* to, Real value) { *to = value; }
+INLINE void put(Real* to, Wide value) { store(to, value); }
+
+// From the stress of each quadrant, degraded, to forces on the edges. Number: Real or Wide.
 class QuadrantForces {
  public:
-  QuadrantForces(const View& v, const Rows& rows, const HalfEdges& out)
-      : rows_(rows), out_(out), weight_(v.column_weight), x_(Real(v.corner_area / v.hx)), z_(Real(v.corner_area / v.hz)) {}
+  QuadrantForces(const View& v, const HalfEdges& out) : out_(out), x_(Real(v.corner_area / v.hx)), z_(Real(v.corner_area / v.hz)) {}
 
-  INLINE void add(Index i, Stress sw, Stress se, Stress nw, Stress ne) const {
-    add(i, weight_[i], sw, se, nw, ne, [](Real& to, Real value) { to = value; });
-  }
-  INLINE void add(Index i, const WideStress& sw, const WideStress& se, const WideStress& nw, const WideStress& ne) const {
-    add(i, load(weight_ + i), sw, se, nw, ne, [](Real& to, Wide value) { store(&to, value); });
+  // Adds the nodes' stress to the sums.
+  template <class Number, class Quadrant>
+  INLINE void add(Index i, Number weight, const Quadrant& sw, const Quadrant& se, const Quadrant& nw, const Quadrant& ne, Number& xx,
+                  Number& zz) const {
+    const Number z = weight * z_;
+    const Number east_x = x_ * (ne.xx + se.xx), west_x = x_ * (nw.xx + sw.xx), east_z = x_ * (ne.xz + se.xz), west_z = x_ * (nw.xz + sw.xz);
+    const Number north_x = z * (ne.xz + nw.xz), south_x = z * (se.xz + sw.xz), north_z = z * (ne.zz + nw.zz), south_z = z * (se.zz + sw.zz);
+    put(out_.east_x + i, east_x), put(out_.east_z + i, east_z), put(out_.west_x + i, west_x), put(out_.west_z + i, west_z);
+    put(out_.north_x + i, north_x), put(out_.north_z + i, north_z), put(out_.south_x + i, south_x), put(out_.south_z + i, south_z);
+    put(out_.own_x + i, (east_x - west_x) + (north_x - south_x)), put(out_.own_z + i, (east_z - west_z) + (north_z - south_z));
+    xx += weight * (east_x + west_x), zz += north_z + south_z;
   }
 
  private:
-  template <class Number, class Quadrant, class Put>
-  INLINE void add(Index i, Number weight, const Quadrant& sw, const Quadrant& se, const Quadrant& nw, const Quadrant& ne,
-                  const Put& put) const {
-    const Number z = weight * z_, east = x_ * (ne.xx + se.xx), west = x_ * (nw.xx + sw.xx);
-    const Number north = z * (ne.zz + nw.zz), south = z * (se.zz + sw.zz);
-    put(rows_.east_x[i], east);
-    put(rows_.west_x[i], west);
-    put(rows_.east_z[i], x_ * (ne.xz + se.xz));
-    put(rows_.west_z[i], x_ * (nw.xz + sw.xz));
-    put(out_.north_z[i], north);
-    put(out_.south_z[i], south);
-    put(out_.north_x[i], z * (ne.xz + nw.xz));
-    put(out_.south_x[i], z * (se.xz + sw.xz));
-    put(rows_.stress_xx[i], weight * (east + west));
-    put(rows_.stress_zz[i], north + south);
-  }
-
-  Rows rows_;
   HalfEdges out_;
-  const Real* weight_;
   Real x_, z_;
 };
 
-// body(first node, tile) for the tiles of a row that give as said.
-template <class Body>
-INLINE void over_giving(const View& v, const unsigned char* gives, unsigned char what, const Body& body) {
+// Beside tiles that give all nothing acts, and the tiles there take what these give at the common edge; outside the sides the inner
+// quadrants are mirrored.
+INLINE void close_ends(const View& v, unsigned char* gives, const HalfEdges& out, Index t) {
+  const Index last = v.columns - 1, tile = t * lanes, end = tile + lanes;
+  if (t == 0)
+    out.east_x[-1] = -out.west_x[0], out.east_z[-1] = -out.west_z[0];
+  else if (gives[t - 1] != gives_all)
+    gives[t - 1] = gives_parts, out.east_x[tile - 1] = out.east_z[tile - 1] = Real(0);
+  if (end > last)
+    out.west_x[last + 1] = -out.east_x[last], out.west_z[last + 1] = -out.east_z[last];
+  else if (gives[t + 1] != gives_all)
+    gives[t + 1] = gives_parts, out.west_x[end] = out.west_z[end] = Real(0);
+}
+
+INLINE void finish(const View& v, unsigned char* gives, const HalfEdges& out, const Partial& xx, const Partial& zz, Sums& sums) {
   for (Index t = 0; t < v.tiles; ++t)
-    if (gives[t] == what) body(t * lanes, t);
-}
-
-// Beside the tiles that give all nothing acts; outside the sides the inner quadrants are mirrored.
-INLINE void close_ends(const View& v, const unsigned char* gives, const Rows& rows) {
-  const Index last = v.columns - 1;
-  over_giving(
-      v, gives, gives_all, [&](Index tile, Index t) __attribute__((always_inline)) {
-        const Index end = tile + lanes;
-        if (t == 0 || gives[t - 1] != gives_all) rows.east_x[tile - 1] = rows.east_z[tile - 1] = Real(0);
-        if (t + 1 == v.tiles || gives[t + 1] != gives_all) rows.west_x[end] = rows.west_z[end] = Real(0);
-        if (t == 0) rows.east_x[-1] = -rows.west_x[0], rows.east_z[-1] = -rows.west_z[0];
-        if (end > last) rows.west_x[last + 1] = -rows.east_x[last], rows.west_z[last + 1] = -rows.east_z[last];
-      });
-}
-
-INLINE void finish_quadrants(const View& v, const unsigned char* gives, const Rows& rows, const HalfEdges& out, Sums& sums) {
-  close_ends(v, gives, rows);
-  Partial xx, zz;
-  over_giving(
-      v, gives, gives_all, [&](Index tile, Index) __attribute__((always_inline)) {
-        along_tile(
-            tile, TILE_BODY {
-              out.part_x[i] =
-                  (rows.east_x[i] + rows.west_x[i + 1]) - (rows.east_x[i - 1] + rows.west_x[i]) + (out.north_x[i] - out.south_x[i]);
-              out.part_z[i] =
-                  (rows.east_z[i] + rows.west_z[i + 1]) - (rows.east_z[i - 1] + rows.west_z[i]) + (out.north_z[i] - out.south_z[i]);
-              xx.at[l] += rows.stress_xx[i];
-              zz.at[l] += rows.stress_zz[i];
-            });
-      });
+    if (gives[t] == gives_all) close_ends(v, gives, out, t);
   add(sums.stress_xx, xx, v.hx);
   add(sums.stress_zz, zz, v.hz);
 }
 
-// The nodes next to tiles that give all.
-INLINE void give_parts(const View& v, const unsigned char* gives, const Rows& rows, const HalfEdges& out) {
-  over_giving(
-      v, gives, gives_parts, [&](Index tile, Index t) __attribute__((always_inline)) {
-        const Index last = tile + lanes - 1;
-        along_tile(
-            tile, TILE_BODY { out.part_x[i] = out.part_z[i] = Real(0); });
-        if (t > 0 && gives[t - 1] == gives_all) out.part_x[tile] = -rows.east_x[tile - 1], out.part_z[tile] = -rows.east_z[tile - 1];
-        if (t + 1 < v.tiles && gives[t + 1] == gives_all)
-          out.part_x[last] = rows.west_x[last + 1], out.part_z[last] = rows.west_z[last + 1];
-      });
-}
-
-// What yielding takes from the elastic stress: the share 1 - s of mu, the bulk modulus kept. `mu` is g times the part of mu that is lost
+// What yielding takes from the elastic stress: the share 1 - s of mu, the bulk modulus kept. `soft` is g times the part of mu that is lost
 // where r = 0.
-INLINE WideStress yielded_stress(Wide mu, Wide p, Wide xx, Wide zz, Wide xz) {
-  const Wide lost = mu * (Real(1) - yield_over_q(p)), third = Real(2.0 / 3.0) * lost;
+INLINE WideStress yielded_stress(Wide soft, Wide p, Wide xx, Wide zz, Wide xz) {
+  const Wide lost = soft * (Real(1) - yield_over_q(p)), third = Real(2.0 / 3.0) * lost;
   return {third * (zz - Real(2) * xx), third * (xx - Real(2) * zz), -(lost * xz)};
 }
 
-// Tiles that yielded, or nearly, when last worked on. A light step leaves their flags so that they are looked at again.
-INLINE void yielded_force(const View& v, int j, unsigned char* gives, const Rows& rows, const HalfEdges& out) {
-  const Between at = between(v, j);
-  const Real n = at.above.soft * v.element_rows[j + 1].stiffness.C55, s = at.below.soft * v.element_rows[j].stiffness.C55;
-  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz), *whole = v.whole_nodes + row_at(v, j);
-  const QuadrantForces forces(v, rows, out);
-  unsigned char* yields = v.yields + Index(j) * v.tiles;
-  for (Index t = 0; t < v.tiles; ++t) {
-    gives[t] = gives_nothing;
-    if (!yields[t]) continue;
-    yields[t] = yielding_of(v, at, whole, t * lanes) == does_yield ? does_yield : nearly_yields;
-    if (yields[t] != does_yield) continue;
-    gives[t] = gives_all;
-    for (Index i = t * lanes; i < (t + 1) * lanes; i += width) {
-      const Differences d = differences(at, i);
-      const Quarters p = yield_forms(at, d);
-      const Wide g = load(rows.g + i), xw = per_hx * d.xw, xe = per_hx * d.xe, zs = per_hz * d.zs, zn = per_hz * d.zn;
-      forces.add(i, yielded_stress(s * g, p.sw, xw, zs, per_hz * d.sw), yielded_stress(s * g, p.se, xe, zs, per_hz * d.se),
-                 yielded_stress(n * g, p.nw, xw, zn, per_hz * d.nw), yielded_stress(n * g, p.ne, xe, zn, per_hz * d.ne));
-    }
+// Constants of a row that may yield.
+struct Softening {
+  Between at;
+  Real n, s;  // of mu
+  Real per_hx, per_hz;
+};
+
+INLINE Softening softening(const View& v, int j) {
+  const ElementRow &n = v.element_rows[j + 1], &s = v.element_rows[j];
+  return {between(v, j), n.yielding.soft * n.stiffness.C55, s.yielding.soft * s.stiffness.C55, Real(1.0 / v.hx), Real(1.0 / v.hz)};
+}
+
+INLINE void yielded_tile(const View& v, const Softening& row, const QuadrantForces& forces, const Real* g, Index tile, Partial& xx,
+                         Partial& zz) {
+  for (Index part = 0; part < lanes; part += width) {
+    const Index i = tile + part;
+    const Differences d = differences(row.at, i);
+    const Quarters p = yield_forms(row.at, d);
+    const Wide n = row.n * load(g + i), s = row.s * load(g + i);
+    const Wide xw = row.per_hx * d.xw, xe = row.per_hx * d.xe, zs = row.per_hz * d.zs, zn = row.per_hz * d.zn;
+    const WideStress sw = yielded_stress(s, p.sw, xw, zs, row.per_hz * d.sw), se = yielded_stress(s, p.se, xe, zs, row.per_hz * d.se);
+    const WideStress nw = yielded_stress(n, p.nw, xw, zn, row.per_hz * d.nw), ne = yielded_stress(n, p.ne, xe, zn, row.per_hz * d.ne);
+    Wide sum_x = load(xx.at + part), sum_z = load(zz.at + part);
+    forces.add(i, load(v.column_weight + i), sw, se, nw, ne, sum_x, sum_z);
+    store(xx.at + part, sum_x), store(zz.at + part, sum_z);
   }
+}
+
+// Tiles that yielded, or nearly, when last looked at. All flags but 0 stay in a light step, so that they are looked at again.
+INLINE void yielded_force(const View& v, int j, unsigned char* gives, Sums& sums) {
+  unsigned char *yields = v.yields + Index(j) * v.tiles, any = 0;
+  for (Index t = 0; t < v.tiles; ++t) gives[t] = gives_nothing, any |= yields[t];
+  if (!any) return;
+  const Softening row = softening(v, j);
+  const HalfEdges out = half_edges(v, j);
+  const QuadrantForces forces(v, out);
+  const Real *g = v.degradation + row_at(v, j), *whole = v.whole_nodes + row_at(v, j);
+  Partial xx, zz;
+  bool found = false;
+  for (Index t = 0; t < v.tiles; ++t) {
+    if (!yields[t]) continue;
+    yields[t] = yielding_of(v, row.at, whole, t * lanes) == does_yield ? does_yield : nearly_yields;
+    if (yields[t] != does_yield) continue;
+    gives[t] = gives_all, found = true;
+    yielded_tile(v, row, forces, g, t * lanes, xx, zz);
+  }
+  if (found) finish(v, gives, out, xx, zz, sums);
 }
 
 template <class Law>
@@ -177,56 +143,36 @@ INLINE Stress split_stress(const Law& law, Real g, const Strain& e) {
 }
 
 template <class Law>
-INLINE void split_force(const View& v, int j, const Rows& rows, const HalfEdges& out) {
+INLINE void split_force(const View& v, int j, unsigned char* gives, Sums& sums) {
   const Around u = around(v, j);
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
-  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz);
-  const QuadrantForces forces(v, rows, out);
-  const Real* degradation = rows.g;
-  along_row(
-      v.padded, ROW_BODY {
+  const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz), *g = v.degradation + row_at(v, j), *weight = v.column_weight;
+  const HalfEdges out = half_edges(v, j);
+  const QuadrantForces forces(v, out);
+  Partial xx, zz;
+  along_tiles(
+      v.padded, TILE_BODY {
         const Quadrants e = strains(u, i, per_hx, per_hz);
-        const Real g = degradation[i];
-        forces.add(i, split_stress(s, g, e.sw), split_stress(s, g, e.se), split_stress(n, g, e.nw), split_stress(n, g, e.ne));
+        forces.add(i, weight[i], split_stress(s, g[i], e.sw), split_stress(s, g[i], e.se), split_stress(n, g[i], e.nw),
+                   split_stress(n, g[i], e.ne), xx.at[l], zz.at[l]);
       });
-}
-
-// The law is chosen once for a row.
-INLINE void quadrant_forces(const View& v, int j, unsigned char* gives, const Rows& rows, const HalfEdges& out) {
   for (Index t = 0; t < v.tiles; ++t) gives[t] = gives_all;
-  switch (v.law) {
-    case RowLaw::seed:
-    case RowLaw::none:
-      return yielded_force(v, j, gives, rows, out);
-    case RowLaw::spectral:
-      return split_force<law::SpectralSplit<Real>>(v, j, rows, out);
-    case RowLaw::star_convex:
-      return split_force<law::StarConvexSplit<Real>>(v, j, rows, out);
-  }
-}
-
-// Tiles beside those that give all take a part at the edges between. True where a tile gives.
-INLINE bool find_parts(const View& v, unsigned char* gives) {
-  bool found = false;
-  for (Index t = 0; t < v.tiles; ++t) {
-    if (gives[t] != gives_all) continue;
-    found = true;
-    if (t > 0 && gives[t - 1] == gives_nothing) gives[t - 1] = gives_parts;
-    if (t + 1 < v.tiles && gives[t + 1] == gives_nothing) gives[t + 1] = gives_parts;
-  }
-  return found;
+  finish(v, gives, out, xx, zz, sums);
 }
 
 }  // namespace
 
 void force(const View& v, int j, Sums& sums) {
   unsigned char* gives = v.gives + Index(j) * v.tiles;
-  const Rows rows = rows_of(v, j);
-  const HalfEdges out = half_edges(v, j);
-  quadrant_forces(v, j, gives, rows, out);
-  if (!find_parts(v, gives)) return;
-  finish_quadrants(v, gives, rows, out, sums);
-  give_parts(v, gives, rows, out);
+  switch (v.law) {
+    case RowLaw::seed:
+    case RowLaw::none:
+      return yielded_force(v, j, gives, sums);
+    case RowLaw::spectral:
+      return split_force<law::SpectralSplit<Real>>(v, j, gives, sums);
+    case RowLaw::star_convex:
+      return split_force<law::StarConvexSplit<Real>>(v, j, gives, sums);
+  }
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -18,25 +18,6 @@ void drift(const View& v, int j, Real dt) {
 
 namespace {
 
-// body(i) along the tiles of a row whose flag is at least `least`.
-template <class Body>
-INLINE void along_giving(const View& v, int j, unsigned char least, const Body& body) {
-  const unsigned char* gives = v.gives + Index(j) * v.tiles;
-  for (Index t = 0; t < v.tiles; ++t)
-    if (gives[t] >= least) along_tile(t * lanes, body);
-}
-
-// What the half edges of the rows j - 1 to j + 1 add to the force of row j.
-INLINE void add_half_edges(const View& v, int j, Real* fx, Real* fz) {
-  const HalfEdges here = half_edges(v, j), above = half_edges(v, j + 1), below = half_edges(v, j - 1);
-  along_giving(
-      v, j, gives_parts, TILE_BODY { fx[i] += here.part_x[i], fz[i] += here.part_z[i]; });
-  along_giving(
-      v, j + 1, gives_all, TILE_BODY { fx[i] += above.south_x[i], fz[i] += above.south_z[i]; });
-  along_giving(
-      v, j - 1, gives_all, TILE_BODY { fx[i] -= below.north_x[i], fz[i] -= below.north_z[i]; });
-}
-
 // Any row.
 INLINE void kick_row(const View& v, int j, Real dt, Sums& sums) {
   const Index at = row_at(v, j);
@@ -46,7 +27,11 @@ INLINE void kick_row(const View& v, int j, Real dt, Sums& sums) {
     elastic_forces(v, j, fx, fz, sums);
   else
     for (Index i = 0; i < v.padded; ++i) fx[i] = fz[i] = Real(0);
-  add_half_edges(v, j, fx, fz);
+  for (Index i = 0; i < v.padded; i += width) {
+    Wide x = load(fx + i), z = load(fz + i);
+    add_half_edges(v, j, i, x, z);
+    store(fx + i, x), store(fz + i, z);
+  }
   for (int k = v.node_force_begin[j]; k < v.node_force_begin[j + 1]; ++k) {
     const NodeForce<Real>& force = v.node_forces[k];
     fx[force.column] += force.x, fz[force.column] += force.z;

@@ -121,18 +121,41 @@ INLINE double ordered_sum(const Real* __restrict x, Index n) {
 
 INLINE Real* scratch_row(const View& v, int k) { return v.scratch + Index(k) * v.stride; }
 
-// What the quadrants of node row j give to the forces, kept until the rows around it are kicked: `north` and `south` act on the edges to
-// the rows above and below, `part` is the rest of the row's own force. The rows of a strip and those around it go round.
+// What the quadrants of node row j give to the forces, kept until the rows around it are kicked: they act on the edges to the nodes around,
+// `own` is what the nodes themselves take of it. The rows of a strip and those around it go round.
 struct HalfEdges {
-  Real *north_x, *north_z, *south_x, *south_z, *part_x, *part_z;
+  Real *north_x, *north_z, *south_x, *south_z, *east_x, *east_z, *west_x, *west_z, *own_x, *own_z;
 };
-inline constexpr int half_edge_rows = 6, half_edge_places = strip_rows + 3, first_free_row = half_edge_places * half_edge_rows;
-static_assert(first_free_row + 6 <= scratch_rows);
+inline constexpr int half_edge_rows = 10, half_edge_places = strip_rows + 3, first_free_row = half_edge_places * half_edge_rows;
+static_assert(first_free_row + 3 <= scratch_rows);
 
 INLINE HalfEdges half_edges(const View& v, int j) {
-  const int k = ((j + half_edge_places) % half_edge_places) * half_edge_rows;
-  return {scratch_row(v, k),     scratch_row(v, k + 1), scratch_row(v, k + 2),
-          scratch_row(v, k + 3), scratch_row(v, k + 4), scratch_row(v, k + 5)};
+  Real* row = scratch_row(v, ((j + half_edge_places) % half_edge_places) * half_edge_rows);
+  const auto at = [&](Index k) { return row + k * v.stride; };
+  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9)};
+}
+
+// Adds to the force of nodes i to i + width of row j what the half edges of the rows j - 1 to j + 1 give.
+INLINE void add_half_edges(const View& v, int j, Index i, Wide& fx, Wide& fz) {
+  const unsigned char* gives = v.gives + Index(j) * v.tiles + i / lanes;
+  if (gives[0] == gives_all) {
+    const HalfEdges here = half_edges(v, j);
+    fx += load(here.own_x + i) + (load(here.west_x + i + 1) - load(here.east_x + i - 1));
+    fz += load(here.own_z + i) + (load(here.west_z + i + 1) - load(here.east_z + i - 1));
+  } else if (gives[0] == gives_parts) {
+    const HalfEdges here = half_edges(v, j);
+    const Index end = i + width;
+    if (i % lanes == 0 && i > 0 && gives[-1] == gives_all) fx[0] -= here.east_x[i - 1], fz[0] -= here.east_z[i - 1];
+    if (end % lanes == 0 && end < v.padded && gives[1] == gives_all) fx[width - 1] += here.west_x[end], fz[width - 1] += here.west_z[end];
+  }
+  if (gives[v.tiles] == gives_all) {
+    const HalfEdges above = half_edges(v, j + 1);
+    fx += load(above.south_x + i), fz += load(above.south_z + i);
+  }
+  if (gives[-v.tiles] == gives_all) {
+    const HalfEdges below = half_edges(v, j - 1);
+    fx -= load(below.north_x + i), fz -= load(below.north_z + i);
+  }
 }
 
 // Laws whose quadrants are linear elastic where nothing yields.

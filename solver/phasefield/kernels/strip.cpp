@@ -116,26 +116,12 @@ class Column {
 };
 
 // What yielding gives to the forces of a strip's nodes.
-INLINE void add_half_edges(const View& v, int first, int end, Index i, Forces& f) {
-  const unsigned char* gives = v.gives + Index(first) * v.tiles + i / lanes;
+INLINE void add_yielding(const View& v, int first, int end, Index i, Forces& f) {
+  const unsigned char* gives = v.gives + Index(first - 1) * v.tiles + i / lanes;
   unsigned char any = gives_nothing;
-  for (int j = first - 1; j <= end; ++j) any |= gives[Index(j - first) * v.tiles];
+  for (int j = first - 1; j <= end; ++j, gives += v.tiles) any |= *gives;
   if (any == gives_nothing) return;
-  for (int j = first; j < end; ++j, gives += v.tiles) {
-    const int k = j - first;
-    if (gives[0] != gives_nothing) {
-      const HalfEdges here = half_edges(v, j);
-      f.x[k] += load(here.part_x + i), f.z[k] += load(here.part_z + i);
-    }
-    if (gives[v.tiles] == gives_all) {
-      const HalfEdges above = half_edges(v, j + 1);
-      f.x[k] += load(above.south_x + i), f.z[k] += load(above.south_z + i);
-    }
-    if (gives[-v.tiles] == gives_all) {
-      const HalfEdges below = half_edges(v, j - 1);
-      f.x[k] -= load(below.north_x + i), f.z[k] -= load(below.north_z + i);
-    }
-  }
+  for (int j = first; j < end; ++j) add_half_edges(v, j, i, f.x[j - first], f.z[j - first]);
 }
 
 INLINE void store_forces(const View& v, int first, int end, Index i, const Forces& f) {
@@ -171,7 +157,7 @@ INLINE void kick_tile(const View& v, int first, int end, Index tile, Real dt, Su
     Column<at_side> column(v, first, i, forces);
     column.run(end - first);
     store(xx.at + part, column.stress_xx()), store(zz.at + part, column.stress_zz());
-    add_half_edges(v, first, end, i, forces);
+    add_yielding(v, first, end, i, forces);
     if (at_side || v.keeps_forces) store_forces(v, first, end, i, forces);
     store(kinetic.at + part, move_on<at_side>(v, first, end, i, forces, dt));
   }
