@@ -127,10 +127,14 @@ struct Sums {
   Parts kinetic;               // J/m, of the mean velocity
 };
 
+// The surface functional.
+struct SurfaceParts {
+  Parts local;     // J/m, of psi
+  Parts gradient;  // J/m, of its gradient
+  Parts length;    // m, of the cracks
+};
 struct SurfaceSum {
-  double local;     // J/m, of psi
-  double gradient;  // J/m, of its gradient
-  double length;    // m, of the cracks
+  double local, gradient, length;
 };
 
 template <class Real>
@@ -162,8 +166,9 @@ struct Kernels {
   void (*force)(const View<Real>&, int j, Sums&);
   // f of the rows of a strip (see Tables), and v += dt f / m, once force() has seen the rows first - 1 to end. Needs u and g of these rows.
   void (*kick)(const View<Real>&, int first, int end, Real dt, Sums&);
-  // Surface functional of element row j.
-  SurfaceSum (*surface)(const View<Real>&, int j, const Real* psi);
+  // Surface functional: what the nodes of some rows among elements of one surface law (see Tables), and the edges along these rows and up
+  // to the next, add to it.
+  void (*surface)(const View<Real>&, int begin, int end, const Real* psi, SurfaceParts&);
 };
 
 // Paths that this processor runs, best first; the last is the baseline, which every processor runs.

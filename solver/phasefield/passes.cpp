@@ -237,12 +237,9 @@ double elastic_energy(const Model& model, State<Real>& state, Scratch<Real>& scr
 template <class Real>
 SurfaceSum surface(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
   const View<Real> v = view(model, state, scratch);
-  SurfaceSum sum{0.0, 0.0, 0.0};
-  for (int j = 0; j + 1 < v.rows; ++j) {
-    const SurfaceSum row = kernels.surface(v, j, state.psi.data() + model.grid.origin());
-    sum.local += row.local, sum.gradient += row.gradient, sum.length += row.length;
-  }
-  return sum;
+  SurfaceParts sums;
+  for (const auto [begin, end] : scratch.tables.surface_rows) kernels.surface(v, begin, end, state.psi.data() + model.grid.origin(), sums);
+  return {sums.local.total(), sums.gradient.total(), sums.length.total()};
 }
 
 #define FRACFARM_INSTANTIATE(Real)                                                                                            \

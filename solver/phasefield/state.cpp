@@ -85,6 +85,25 @@ std::vector<Run> strips_of(const Model& model) {
   return strips;
 }
 
+bool same_surface(const ElementRow<double>& a, const ElementRow<double>& b) {
+  return a.surface_square == b.surface_square && a.surface_linear == b.surface_linear && a.surface_gradient == b.surface_gradient &&
+         a.surface_length == b.surface_length;
+}
+
+// As many neighbouring rows as may go into one sum of Reals.
+std::vector<Run> surface_rows_of(const Model& model) {
+  constexpr int most = 8;
+  std::vector<Run> runs;
+  for (int j = 0; j < model.grid.rows; ++j) {
+    const ElementRow<double>* rows = model.element_rows.data() + j;
+    if (j > 0 && runs.back().end - runs.back().begin < most && same_surface(rows[0], rows[-1]) && same_surface(rows[1], rows[0]))
+      ++runs.back().end;
+    else
+      runs.push_back({j, j + 1});
+  }
+  return runs;
+}
+
 template <class Real>
 Tables<Real> make_tables(const Model& model) {
   const Grid& grid = model.grid;
@@ -99,6 +118,7 @@ Tables<Real> make_tables(const Model& model) {
   for (int j = 0; j <= grid.rows; ++j) tables.whole_rows.begin.push_back(j);
   tables.whole_rows.runs.assign(static_cast<std::size_t>(grid.rows), Run{0, grid.padded_columns()});
   tables.strips = strips_of(model);
+  tables.surface_rows = surface_rows_of(model);
   std::vector<std::size_t> pinned = model.pinned, pulled;
   std::sort(pinned.begin(), pinned.end());
   tables.pin_begin = row_begins(grid, pinned);

@@ -56,6 +56,7 @@ struct Tables {
   std::vector<NodeRow<Real>> node_rows;
   RunList whole_rows;
   std::vector<Run> strips;  // of rows that are kicked together: of one kind among elements of one kind, or one row
+  std::vector<Run> surface_rows;  // rows whose elements below are of one surface law, and those above
   Field<Real> column_weight, whole;
   std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
   std::vector<const Real*> inverse_mass_x, inverse_mass_z;

@@ -74,24 +74,55 @@ void rest(const View& v, int j, const Real* psi, Real* previous, Real* other) {
   mirror(v, before), mirror(v, spare);
 }
 
-SurfaceSum surface(const View& v, int j, const Real* psi) {
-  const Real *south = psi + row_at(v, j), *north = south + v.stride;
-  Real *square = scratch_row(v, first_free_row), *linear = square + v.stride, *slope = linear + v.stride;
-  const Real per_xx = Real(1.0 / (v.hx * v.hx)), per_zz = Real(1.0 / (v.hz * v.hz));
+namespace {
+
+// Rows with the same constants. Corner by corner, summed by nodes and edges: a node is a corner of the elements around it, an edge a side
+// of those beside it. The first and the last tile have weights.
+template <bool with_linear>
+INLINE void surface_rows(const View& v, int begin, int end, const Real* psi, SurfaceParts& sums) {
+  const Real* weight = v.column_weight;
+  const Index last = v.padded - lanes;
+  Partial square, single, along, up, inside;
 #pragma omp simd
-  for (Index i = 0; i < v.padded; ++i) {
-    square[i] = (south[i] * south[i] + south[i + 1] * south[i + 1]) + (north[i] * north[i] + north[i + 1] * north[i + 1]);
-    linear[i] = (south[i] + south[i + 1]) + (north[i] + north[i + 1]);
-    const Real s = south[i + 1] - south[i], n = north[i + 1] - north[i], w = north[i] - south[i], e = north[i + 1] - south[i + 1];
-    slope[i] = Real(2) * (per_xx * (s * s + n * n) + per_zz * (w * w + e * e));
+  for (Index l = 0; l < lanes; ++l) inside.at[l] = Real(int(last + l) < v.columns - 1);
+  for (int j = begin; j < end; ++j) {
+    const Real *here = psi + row_at(v, j), *north = j + 1 < v.rows ? here + v.stride : here;
+    const auto tile = [&](Index first, const auto& node, const auto& edge) __attribute__((always_inline)) {
+      along_tile(
+          first, TILE_BODY {
+            const Real x = here[i + 1] - here[i], z = north[i] - here[i];
+            square.at[l] += node(i) * (here[i] * here[i]);
+            if (with_linear) single.at[l] += node(i) * here[i];
+            along.at[l] += edge(l) * (x * x);
+            up.at[l] += node(i) * (z * z);
+          });
+    };
+    const auto one = [](Index) __attribute__((always_inline)) { return Real(1); };
+    const auto of_column = [&](Index i) __attribute__((always_inline)) { return weight[i]; };
+    if (last > 0) tile(0, of_column, one);
+    for (Index first = lanes; first < last; first += lanes) tile(first, one, one);
+    tile(
+        last, of_column, [&](Index l) __attribute__((always_inline)) { return inside.at[l]; });
   }
-  for (Real* row : {square, linear, slope})
-    for (Index i = v.columns - 1; i < v.padded; ++i) row[i] = Real(0);
-  const ElementRow& row = v.element_rows[j + 1];
-  const double gradient = v.corner_area * ordered_sum(slope, v.padded);
-  const double local =
-      double(row.surface_square) * ordered_sum(square, v.padded) + double(row.surface_linear) * ordered_sum(linear, v.padded);
-  return {v.corner_area * local, double(row.surface_gradient) * gradient, double(row.surface_length) * gradient};
+  const double area = 2.0 * v.corner_area, per_xx = area / (v.hx * v.hx), per_zz = 2.0 * area / (v.hz * v.hz);
+  const ElementRow &below = v.element_rows[begin], &above = v.element_rows[begin + 1];
+  const double both = double(below.surface_gradient) + double(above.surface_gradient);
+  const double both_lengths = double(below.surface_length) + double(above.surface_length);
+  add(sums.local, square, area * (double(below.surface_square) + double(above.surface_square)));
+  if (with_linear) add(sums.local, single, area * (double(below.surface_linear) + double(above.surface_linear)));
+  add(sums.gradient, along, per_xx * both);
+  add(sums.gradient, up, per_zz * double(above.surface_gradient));
+  add(sums.length, along, per_xx * both_lengths);
+  add(sums.length, up, per_zz * double(above.surface_length));
+}
+
+}  // namespace
+
+void surface(const View& v, int begin, int end, const Real* psi, SurfaceParts& sums) {
+  if (v.element_rows[begin].surface_linear == Real(0) && v.element_rows[begin + 1].surface_linear == Real(0))
+    surface_rows<false>(v, begin, end, psi, sums);
+  else
+    surface_rows<true>(v, begin, end, psi, sums);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -15,7 +15,7 @@ double elastic_energy(const View&, int j);
 void degrade(const View&, int j, const Real* psi, const Real* before, Sums&);
 void force(const View&, int j, Sums&);
 void kick(const View&, int first, int end, Real dt, Sums&);
-SurfaceSum surface(const View&, int j, const Real* psi);
+void surface(const View&, int begin, int end, const Real* psi, SurfaceParts&);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
