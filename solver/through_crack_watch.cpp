@@ -30,18 +30,11 @@ bool ThroughCrackWatch::is_through(CrackDirection direction) {
   return joins_sides({damage_, simulation_.columns(), simulation_.rows()}, through_crack_threshold, direction, visited_);
 }
 
-// The same cracked nodes give the same answer as a step ago.
-bool ThroughCrackWatch::cracks_changed() {
-  simulation_.mark_cracked(through_crack_threshold, cracked_);
-  if (cracked_ == searched_) return false;
-  searched_ = cracked_;
-  return true;
-}
-
+// The same cracked nodes give the same answer as when they were last looked at.
 void ThroughCrackWatch::after_step(double time) {
   if (through_crack_) return;
   const auto reaches = [&](CrackDirection direction) { return reaches_both_sides(direction); };
-  if (std::none_of(directions_.begin(), directions_.end(), reaches) || !cracks_changed()) return;
+  if (std::none_of(directions_.begin(), directions_.end(), reaches) || !simulation_.mark_cracked(through_crack_threshold, marks_)) return;
   for (const CrackDirection direction : directions_) {
     if (!is_through(direction)) continue;
     through_crack_ = time;

@@ -40,7 +40,6 @@ class ThroughCrackWatch final : public Watch {
  private:
   bool reaches_both_sides(CrackDirection direction) const;
   bool is_through(CrackDirection direction);
-  bool cracks_changed();
 
   const GridSimulation& simulation_;
   std::vector<CrackDirection> directions_;
@@ -50,7 +49,7 @@ class ThroughCrackWatch final : public Watch {
   std::vector<float> psi_through_, psi_dropped_;
   std::vector<double> damage_;  // scratch
   std::vector<unsigned char> visited_;
-  std::vector<unsigned char> cracked_, searched_;  // nodes now, and when a path was last looked for
+  CrackMarks marks_;  // of when a path was last looked for
 };
 
 }  // namespace fracfarm

@@ -18,14 +18,14 @@ class Flood {
     const std::size_t node = static_cast<std::size_t>(row) * static_cast<std::size_t>(field_.columns) + static_cast<std::size_t>(column);
     if (visited_[node] || !(field_.values[node] > threshold_)) return;
     visited_[node] = 1;
-    open_.push_back(static_cast<int>(node));
+    open_.push_back({column, row});
   }
 
   // True as soon as `arrived(column, row)` holds for a node that was reached.
   template <class Arrived>
   bool spread(Arrived arrived) {
     while (!open_.empty()) {
-      const int column = open_.back() % field_.columns, row = open_.back() / field_.columns;
+      const auto [column, row] = open_.back();
       open_.pop_back();
       if (arrived(column, row)) return true;
       for (int r = std::max(row - 1, 0); r <= std::min(row + 1, field_.rows - 1); ++r)
@@ -38,7 +38,10 @@ class Flood {
   const FieldView& field_;
   double threshold_;
   std::vector<unsigned char>& visited_;
-  std::vector<int> open_;  // reached, neighbours not yet looked at
+  struct Node {
+    int column, row;
+  };
+  std::vector<Node> open_;  // reached, neighbours not yet looked at
 };
 
 }  // namespace

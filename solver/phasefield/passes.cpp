@@ -100,6 +100,8 @@ class Sweeps {
     if (count_ % 2 == 1) std::swap(state_.psi_previous, scratch_.psi_other);
     std::swap(state_.psi, state_.psi_previous);
     state_.sweeps += static_cast<long long>(count_);
+    ++scratch_.solves;
+    if (state_.whole) scratch_.last_whole = scratch_.solves;
     return {};
   }
   tl::unexpected<Error> trouble() const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/phasefield/passes.hpp"
 
@@ -56,6 +57,18 @@ template <class From, class To>
 void copy_rows(const Grid& grid, const From* from, To* to) {
   for (int j = 0; j < grid.rows; ++j)
     std::copy_n(from + grid.index(0, j), grid.columns, to + static_cast<std::ptrdiff_t>(j) * grid.columns);
+}
+
+// Not 0 where a mark changed.
+template <class Real>
+unsigned mark_above(Real limit, const Real* __restrict values, int count, unsigned char* __restrict marks) {
+  unsigned char changed = 0;
+  for (int i = 0; i < count; ++i) {
+    const unsigned char mark = values[i] > limit;
+    changed = static_cast<unsigned char>(changed | (mark ^ marks[i]));
+    marks[i] = mark;
+  }
+  return changed;
 }
 
 }  // namespace
@@ -117,18 +130,24 @@ SampleRow PhaseField<Real>::sample(long long n, double dt) const {
   return s;
 }
 
+// Since the last whole step only tiles whose psi moves can have changed.
 template <class Real>
-void PhaseField<Real>::mark_cracked(double threshold, std::vector<unsigned char>& cracked) const {
+bool PhaseField<Real>::mark_cracked(double threshold, CrackMarks& marks) const {
   const Grid& grid = model_.grid;
-  cracked.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
-  const int columns = grid.columns;
+  if (marks.cracked.empty()) marks = {std::vector<unsigned char>(static_cast<std::size_t>(grid.columns * grid.rows)), -1};
+  const long long before = std::exchange(marks.as_of, scratch_.solves);
+  if (before == scratch_.solves) return false;
   Real limit = static_cast<Real>(threshold);  // the largest number that is not above the threshold
   if (static_cast<double>(limit) > threshold) limit = std::nextafter(limit, -std::numeric_limits<Real>::infinity());
-  for (int j = 0; j < grid.rows; ++j) {
-    const Real* __restrict row = state_.psi.data() + grid.index(0, j);
-    unsigned char* __restrict out = cracked.data() + static_cast<std::ptrdiff_t>(j) * grid.columns;
-    for (int i = 0; i < columns; ++i) out[i] = row[i] > limit;
-  }
+  const RunList& runs = before < scratch_.last_whole ? scratch_.tables.whole_rows : scratch_.moving;
+  unsigned changed = 0;
+  for (int j = 0; j < grid.rows; ++j)
+    for (int k = runs.begin[static_cast<std::size_t>(j)]; k < runs.begin[static_cast<std::size_t>(j) + 1]; ++k) {
+      const auto [begin, end] = runs.runs[static_cast<std::size_t>(k)];
+      changed |= mark_above(limit, state_.psi.data() + grid.index(begin, j), std::min(end, grid.columns) - begin,
+                            marks.cracked.data() + static_cast<std::ptrdiff_t>(j) * grid.columns + begin);
+    }
+  return changed != 0;
 }
 
 template <class Real>

@@ -73,6 +73,7 @@ struct Scratch {
   Field<Real> rows;                           // scratch_rows rows for the kernels
   std::vector<double> held_force;             // force on held nodes before the step, in the order of the motions
   std::vector<double> change, change_before;  // by row: correction of its last sweep
+  long long solves = 0, last_whole = 0;       // of psi so far, and the last one of all tiles, as CrackMarks counts them
   double kept = 0.0;                          // J/m, energy that damage cannot release
   double released = 0.0;                      // J/m, in the last step
   StageClock<Stage, stage_names.size()> clock{};

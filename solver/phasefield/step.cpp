@@ -136,6 +136,7 @@ void refresh(const Model& model, State<Real>& state, Scratch<Real>& scratch, con
   find_moving(model.grid, state, scratch);
   scratch.psi_other = state.psi;  // of tiles that rest
   set_equation(model, state, scratch, kernels);
+  scratch.last_whole = ++scratch.solves;
   pull(model, scratch, static_cast<double>(n) * dt);
   const bool whole = std::exchange(state.whole, true);  // g of all nodes
   respond(model, state, scratch, kernels, 0.0);

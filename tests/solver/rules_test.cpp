@@ -100,6 +100,42 @@ TEST_CASE("in light steps tiles that rest keep their damage and history, others 
   }
 }
 
+TEST_CASE("crack marks are those of the damage, asked after every step, now and then, and after a restart, and say where they changed") {
+  using namespace phasefield;
+  const Scene scene = cracked("pbx", 64);
+  PhaseField<double> run(scene, chosen_kernels<double>());
+  const double dt = 0.9 * run.stable_dt(), threshold = 0.5;
+  REQUIRE(run.start(dt));
+  CrackMarks often, seldom;
+  long long changes = 0, unchanged = 0, light = 0;
+  std::vector<double> psi;
+  const auto check = [&](CrackMarks& marks) {
+    const std::vector<unsigned char> before = marks.cracked;
+    const bool changed = run.mark_cracked(threshold, marks);
+    run.copy_damage(psi);
+    bool right = marks.cracked.size() == psi.size();
+    for (std::size_t n = 0; n < psi.size() && right; ++n) right = marks.cracked[n] == (psi[n] > threshold);
+    CHECK(right);
+    CHECK(changed == (marks.cracked != before));
+    ++(changed ? changes : unchanged);
+  };
+  for (int n = 0; n < 400; ++n) {
+    REQUIRE(run.step(n, dt));
+    light += !run.state().whole;
+    check(often);
+    if (n % 7 == 0) check(seldom);
+    if (n != 250) continue;
+    ArchiveWriter archive;
+    run.save(archive);
+    ArchiveReader reader(archive.bytes());
+    REQUIRE(run.load(reader, n + 1, dt));
+    check(often);
+  }
+  CHECK(light > 100);
+  CHECK(changes > 30);
+  CHECK(unchanged > 30);
+}
+
 TEST_CASE("steps are linear until something could damage, and the run is the same") {
   for (const SurfaceModel surface : {SurfaceModel::at2, SurfaceModel::at1}) {
     const Scene scene = ramped(surface);

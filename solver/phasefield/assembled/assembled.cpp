@@ -35,9 +35,11 @@ Assembled::Assembled(const Scene& scene, Prescription prescription)
       state_(make_state(model_)),
       scratch_(make_scratch(model_)) {}
 
-void Assembled::mark_cracked(double threshold, std::vector<unsigned char>& cracked) const {
-  cracked.resize(static_cast<std::size_t>(state_.psi.size()));
+bool Assembled::mark_cracked(double threshold, CrackMarks& marks) const {
+  std::vector<unsigned char> cracked(static_cast<std::size_t>(state_.psi.size()));
   std::transform(state_.psi.begin(), state_.psi.end(), cracked.begin(), [&](double psi) { return psi > threshold; });
+  std::swap(cracked, marks.cracked);
+  return cracked != marks.cracked;
 }
 
 bool Assembled::crack_reaches(Side side, double threshold) const {
