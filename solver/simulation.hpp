@@ -57,7 +57,8 @@ class Simulation {
 // Nodes of a grid whose damage is above a threshold, kept up to date from call to call.
 struct CrackMarks {
   std::vector<unsigned char> cracked;  // 1 or 0 by node
-  long long as_of = -1;                // when they were: the simulation's own count
+  std::vector<int> changed;            // nodes that changed when they were last brought up to date
+  long long as_of = -1;                // when that was: the simulation's own count
 };
 
 // Damage on the nodes of a regular grid, row 0 at the bottom.
@@ -69,8 +70,8 @@ class GridSimulation : public Simulation {
   virtual std::vector<double> z() const = 0;  // m
   virtual std::vector<unsigned char> mask() const = 0;
   virtual void copy_damage(std::vector<double>& values) const = 0;
-  // Brings the marks up to date; true where any changed. The threshold is the same each time.
-  virtual bool mark_cracked(double threshold, CrackMarks& marks) const = 0;
+  // Brings the marks up to date. The threshold is the same each time.
+  virtual void mark_cracked(double threshold, CrackMarks& marks) const = 0;
   virtual bool crack_reaches(Side side, double threshold) const = 0;
   Layout layout() const final { return GridLayout{x(), z(), mask()}; }
 };

@@ -23,24 +23,15 @@ bool ThroughCrackWatch::reaches_both_sides(CrackDirection direction) const {
          simulation_.crack_reaches(across ? Side::right : Side::top, through_crack_threshold);
 }
 
-bool ThroughCrackWatch::is_through(CrackDirection direction) {
-  if (!reaches_both_sides(direction)) return false;
-  simulation_.copy_damage(damage_);
-  visited_.resize(damage_.size());
-  return joins_sides({damage_, simulation_.columns(), simulation_.rows()}, through_crack_threshold, direction, visited_);
-}
-
-// The same cracked nodes give the same answer as when they were last looked at.
 void ThroughCrackWatch::after_step(double time) {
   if (through_crack_) return;
-  const auto reaches = [&](CrackDirection direction) { return reaches_both_sides(direction); };
-  if (std::none_of(directions_.begin(), directions_.end(), reaches) || !simulation_.mark_cracked(through_crack_threshold, marks_)) return;
-  for (const CrackDirection direction : directions_) {
-    if (!is_through(direction)) continue;
-    through_crack_ = time;
-    psi_through_ = simulation_.stored_damage();
-    return;
-  }
+  if (std::none_of(directions_.begin(), directions_.end(), [&](CrackDirection direction) { return reaches_both_sides(direction); })) return;
+  simulation_.mark_cracked(through_crack_threshold, marks_);
+  if (marks_.changed.empty()) return;
+  paths_.update(simulation_.columns(), simulation_.rows(), marks_.cracked, marks_.changed);
+  if (std::none_of(directions_.begin(), directions_.end(), [&](CrackDirection direction) { return paths_.join(direction); })) return;
+  through_crack_ = time;
+  psi_through_ = simulation_.stored_damage();
 }
 
 void ThroughCrackWatch::at_row(const Series& series) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "solver/crack_paths.hpp"
 #include "solver/watch.hpp"
 
 namespace fracfarm {
@@ -39,7 +40,6 @@ class ThroughCrackWatch final : public Watch {
 
  private:
   bool reaches_both_sides(CrackDirection direction) const;
-  bool is_through(CrackDirection direction);
 
   const GridSimulation& simulation_;
   std::vector<CrackDirection> directions_;
@@ -47,9 +47,8 @@ class ThroughCrackWatch final : public Watch {
   double peak_ = 0.0;               // Pa, largest row
   std::vector<float> psi_initial_;  // of the first row
   std::vector<float> psi_through_, psi_dropped_;
-  std::vector<double> damage_;  // scratch
-  std::vector<unsigned char> visited_;
-  CrackMarks marks_;  // of when a path was last looked for
+  CrackMarks marks_;
+  CrackPaths paths_;  // of the marks
 };
 
 }  // namespace fracfarm

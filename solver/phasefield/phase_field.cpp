@@ -59,16 +59,14 @@ void copy_rows(const Grid& grid, const From* from, To* to) {
     std::copy_n(from + grid.index(0, j), grid.columns, to + static_cast<std::ptrdiff_t>(j) * grid.columns);
 }
 
-// Not 0 where a mark changed.
+// Of `count` nodes from `first` on.
 template <class Real>
-unsigned mark_above(Real limit, const Real* __restrict values, int count, unsigned char* __restrict marks) {
+void mark_above(Real limit, const Real* __restrict values, int first, int count, CrackMarks& marks) {
+  unsigned char* __restrict cracked = marks.cracked.data() + first;
   unsigned char changed = 0;
-  for (int i = 0; i < count; ++i) {
-    const unsigned char mark = values[i] > limit;
-    changed = static_cast<unsigned char>(changed | (mark ^ marks[i]));
-    marks[i] = mark;
-  }
-  return changed;
+  for (int i = 0; i < count; ++i) changed = static_cast<unsigned char>(changed | ((values[i] > limit) ^ cracked[i]));
+  for (int i = 0; i < count && changed; ++i)
+    if (std::exchange(cracked[i], values[i] > limit) != (values[i] > limit)) marks.changed.push_back(first + i);
 }
 
 }  // namespace
@@ -131,23 +129,22 @@ SampleRow PhaseField<Real>::sample(long long n, double dt) const {
 }
 
 // Since the last whole step only tiles whose psi moves can have changed.
+// Since the last whole step only tiles whose psi moves can have changed.
 template <class Real>
-bool PhaseField<Real>::mark_cracked(double threshold, CrackMarks& marks) const {
+void PhaseField<Real>::mark_cracked(double threshold, CrackMarks& marks) const {
   const Grid& grid = model_.grid;
-  if (marks.cracked.empty()) marks = {std::vector<unsigned char>(static_cast<std::size_t>(grid.columns * grid.rows)), -1};
+  if (marks.cracked.empty()) marks = {std::vector<unsigned char>(static_cast<std::size_t>(grid.columns * grid.rows)), {}, -1};
+  marks.changed.clear();
   const long long before = std::exchange(marks.as_of, scratch_.solves);
-  if (before == scratch_.solves) return false;
+  if (before == scratch_.solves) return;
   Real limit = static_cast<Real>(threshold);  // the largest number that is not above the threshold
   if (static_cast<double>(limit) > threshold) limit = std::nextafter(limit, -std::numeric_limits<Real>::infinity());
   const RunList& runs = before < scratch_.last_whole ? scratch_.tables.whole_rows : scratch_.moving;
-  unsigned changed = 0;
   for (int j = 0; j < grid.rows; ++j)
     for (int k = runs.begin[static_cast<std::size_t>(j)]; k < runs.begin[static_cast<std::size_t>(j) + 1]; ++k) {
       const auto [begin, end] = runs.runs[static_cast<std::size_t>(k)];
-      changed |= mark_above(limit, state_.psi.data() + grid.index(begin, j), std::min(end, grid.columns) - begin,
-                            marks.cracked.data() + static_cast<std::ptrdiff_t>(j) * grid.columns + begin);
+      mark_above(limit, state_.psi.data() + grid.index(begin, j), j * grid.columns + begin, std::min(end, grid.columns) - begin, marks);
     }
-  return changed != 0;
 }
 
 template <class Real>

@@ -23,7 +23,7 @@ class PhaseField final : public GridSimulation {
   int rows() const override { return model_.grid.rows; }
   void copy_damage(std::vector<double>& values) const override;
   std::vector<float> stored_damage() const override;
-  bool mark_cracked(double threshold, CrackMarks& marks) const override;
+  void mark_cracked(double threshold, CrackMarks& marks) const override;
   std::vector<unsigned char> mask() const override { return model_.mask; }
   std::vector<double> x() const override;
   std::vector<double> z() const override;

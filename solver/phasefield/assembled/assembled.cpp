@@ -1,6 +1,7 @@
 #include "solver/phasefield/assembled/assembled.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "solver/phasefield/assembled/points.hpp"
 
@@ -35,11 +36,13 @@ Assembled::Assembled(const Scene& scene, Prescription prescription)
       state_(make_state(model_)),
       scratch_(make_scratch(model_)) {}
 
-bool Assembled::mark_cracked(double threshold, CrackMarks& marks) const {
-  std::vector<unsigned char> cracked(static_cast<std::size_t>(state_.psi.size()));
-  std::transform(state_.psi.begin(), state_.psi.end(), cracked.begin(), [&](double psi) { return psi > threshold; });
-  std::swap(cracked, marks.cracked);
-  return cracked != marks.cracked;
+void Assembled::mark_cracked(double threshold, CrackMarks& marks) const {
+  marks.cracked.resize(static_cast<std::size_t>(state_.psi.size()));
+  marks.changed.clear();
+  for (std::size_t node = 0; node < marks.cracked.size(); ++node) {
+    const unsigned char mark = state_.psi[static_cast<Eigen::Index>(node)] > threshold;
+    if (std::exchange(marks.cracked[node], mark) != mark) marks.changed.push_back(static_cast<int>(node));
+  }
 }
 
 bool Assembled::crack_reaches(Side side, double threshold) const {
