@@ -8,6 +8,7 @@
 
 #include "common/base/build_info.hpp"
 #include "common/base/exit_code.hpp"
+#include "common/base/kept_memory.hpp"
 #include "solver/program/duration.hpp"
 #include "solver/program/one_shot.hpp"
 #include "solver/program/serve.hpp"
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
     return app.exit(mistake) == 0 ? exit_ok : exit_bad_input;
   }
   if (options.threads > 1) let_threads_sleep(argv);
+  use_large_pages();
   catch_stop_signals();
   if (serving) return serve();
   const std::optional<double> seconds = parse_duration(budget);
