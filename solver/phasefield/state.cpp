@@ -71,17 +71,21 @@ std::vector<int> row_begins(const Grid& grid, const std::vector<std::size_t>& so
   return begins;
 }
 
-// Neighbouring rows among elements of one kind, as many as go together; other rows by themselves.
-std::vector<Run> strips_of(const Model& model) {
-  const std::vector<NodeRow<double>>& rows = model.node_rows;
+// Neighbouring rows among elements of one kind and of the same masses, as many as go together; other rows by themselves.
+template <class Real>
+std::vector<Run> strips_of(const Model& model, const Tables<Real>& tables) {
+  const auto alike = [&](std::size_t a, std::size_t b) {
+    const NodeRow<double>&south = model.node_rows[a], &north = model.node_rows[b];
+    return south.amid && north.amid && south.mass == north.mass && tables.inverse_mass_x[a] == tables.inverse_mass_x[b] &&
+           tables.inverse_mass_z[a] == tables.inverse_mass_z[b];
+  };
   std::vector<Run> strips;
-  for (int j = 0; j < model.grid.rows; ++j) {
-    const auto at = [&](int row) { return rows[static_cast<std::size_t>(row)]; };
-    if (j > 0 && at(j).amid && at(j - 1).amid && at(j).mass == at(j - 1).mass && strips.back().end - strips.back().begin < strip_rows)
+  for (int j = 0; j < model.grid.rows; ++j)
+    if (j > 0 && alike(static_cast<std::size_t>(j - 1), static_cast<std::size_t>(j)) &&
+        strips.back().end - strips.back().begin < strip_rows)
       ++strips.back().end;
     else
       strips.push_back({j, j + 1});
-  }
   return strips;
 }
 
@@ -117,7 +121,7 @@ Tables<Real> make_tables(const Model& model) {
   tables.inverse_mass_z = shared_rows(grid, model.inverse_mass_z, tables.inverse_masses);
   for (int j = 0; j <= grid.rows; ++j) tables.whole_rows.begin.push_back(j);
   tables.whole_rows.runs.assign(static_cast<std::size_t>(grid.rows), Run{0, grid.padded_columns()});
-  tables.strips = strips_of(model);
+  tables.strips = strips_of(model, tables);
   tables.surface_rows = surface_rows_of(model);
   std::vector<std::size_t> pinned = model.pinned, pulled;
   std::sort(pinned.begin(), pinned.end());

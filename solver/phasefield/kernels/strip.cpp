@@ -135,12 +135,11 @@ INLINE void store_forces(const View& v, int first, int end, Index i, const Force
 template <bool at_side>
 INLINE Wide move_on(const View& v, int first, int end, Index i, const Forces& f, Real dt) {
   const Wide weight = load(v.column_weight + i);
+  const Wide per_mass_x = dt * load(v.inverse_mass_x[first] + i), per_mass_z = dt * load(v.inverse_mass_z[first] + i);
   Real *vx = v.vx + row_at(v, first) + i, *vz = v.vz + row_at(v, first) + i;
   Wide sum{};
-  for (int j = first; j < end; ++j, vx += v.stride, vz += v.stride) {
-    const int k = j - first;
-    const Wide before_x = load(vx), before_z = load(vz);
-    const Wide x = before_x + dt * (f.x[k] * load(v.inverse_mass_x[j] + i)), z = before_z + dt * (f.z[k] * load(v.inverse_mass_z[j] + i));
+  for (int k = 0; k < end - first; ++k, vx += v.stride, vz += v.stride) {
+    const Wide before_x = load(vx), before_z = load(vz), x = before_x + per_mass_x * f.x[k], z = before_z + per_mass_z * f.z[k];
     const Wide mean_x = before_x + x, mean_z = before_z + z, square = mean_x * mean_x + mean_z * mean_z;
     sum += at_side ? weight * square : square;
     store(vx, x), store(vz, z);
