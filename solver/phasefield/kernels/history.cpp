@@ -112,7 +112,7 @@ INLINE void plastic_history(const View& v, int j) {
   const Real* whole = v.whole_nodes + row_at(v, j);
   over_tiles(
       v, j, [&](Index tile, Index flag) __attribute__((always_inline)) {
-        const unsigned char yields = yielding_of(v, at, whole, tile);
+        const unsigned char yields = may_yield(v, at, whole, tile) ? yielding_of(v, at, whole, tile) : 0;
         const Real share = nearer(v, flag);
         for (Index i = tile; i < tile + lanes; i += width) {
           const Differences d = differences(at, i);
@@ -133,8 +133,8 @@ INLINE void plastic_history(const View& v, int j) {
 
 template <bool clips>
 INLINE void driving_history(const View& v, int j) {
-  const bool may_yield = v.element_rows[j + 1].plastic || v.element_rows[j].plastic;
-  if (may_yield)
+  const bool plastic = v.element_rows[j + 1].plastic || v.element_rows[j].plastic;
+  if (plastic)
     plastic_history<clips>(v, j);
   else
     elastic_history<clips>(v, j);

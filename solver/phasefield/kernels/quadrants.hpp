@@ -56,6 +56,25 @@ INLINE Wide yield_over_q(Wide p) { return Real(1) / root(larger(p, all(Real(1)))
 // Tiles that will yield before long do not rest: what they took up elastically past sigma_y the potential would not give back. Of p.
 constexpr Real near_yield = Real(0.5);
 
+// At least p of the four quadrants, from the largest squares around a node: |x z| <= (x^2 + z^2) / 2.
+INLINE Wide bound_of_yield(const Between& row, const Differences& d) {
+  const auto most = [&](Real above, Real below) __attribute__((always_inline)) { return larger(above, below); };
+  const Real half = Real(0.5), x = most(row.above.normal_x + half * row.above.cross, row.below.normal_x + half * row.below.cross),
+             z = most(row.above.normal_z + half * row.above.cross, row.below.normal_z + half * row.below.cross),
+             shear = most(row.above.shear, row.below.shear);
+  const Wide along_x = larger(d.xw * d.xw, d.xe * d.xe), along_z = larger(d.zs * d.zs, d.zn * d.zn);
+  const Wide sheared = larger(larger(d.sw * d.sw, d.se * d.se), larger(d.nw * d.nw, d.ne * d.ne));
+  return x * along_x + z * along_z + shear * sheared;
+}
+
+// False where no node of the tile can be near yield; a sixteenth is left for rounding.
+INLINE bool may_yield(const View& v, const Between& at, const Real* whole, Index tile) {
+  bool may = !v.tests_yield;
+  for (Index i = tile; i < tile + lanes; i += width)
+    may = may || any_above(load(whole + i) * bound_of_yield(at, differences(at, i)), near_yield * Real(15.0 / 16.0));
+  return may;
+}
+
 // Flags of a tile. Of nodes that a crack holds nothing but the residual stiffness is left, and an open crack's strain is no strain of the
 // metal: they do not make a tile yield.
 INLINE unsigned char yielding_of(const View& v, const Between& at, const Real* whole, Index tile) {
