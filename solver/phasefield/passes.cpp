@@ -31,6 +31,7 @@ bool is_worked_on(const View<Real>& v, int j) {
   return v.run_begin[j] < v.run_begin[j + 1];
 }
 
+constexpr int most_planned = 8;   // sweeps of a step, where the model does not ask for more
 constexpr int local_rounds = 32;  // of unsettled rows alone; what takes longer is left to Chebyshev
 
 // The sweeps of one solve: they go to and fro between the guess, which stands in psi_previous, and another field.
@@ -40,8 +41,10 @@ class Sweeps {
   Sweeps(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels)
       : state_(state),
         scratch_(scratch),
+        unsettled_(scratch.unsettled_rows),
         kernels_(kernels),
         tolerance_(model.damage_tolerance),
+        least_(model.damage_sweeps),
         local_(model.rules.sweep_where_it_moves),
         radius_(model.jacobi_radius),
         weight_(radius_) {
@@ -62,27 +65,44 @@ class Sweeps {
 
   // More sweeps until every row is settled: of the unsettled rows and their neighbours where these are few, else of the whole grid.
   Result<void> settle(const View<Real>& v) {
+    const std::size_t planned = count_;
     int rounds = 0;
-    for (int unsettled = count_unsettled(); unsettled > 0; unsettled = count_unsettled(), ++rounds) {
+    for (find_unsettled(); !unsettled_.empty(); ++rounds) {
       if (rounds >= damage_sweeps_limit) return trouble();
-      if (local_ && rounds < local_rounds && 4 * unsettled < v.rows)
+      if (local_ && rounds < local_rounds && 4 * static_cast<int>(unsettled_.size()) < v.rows)
         settle_rows(v);
       else
         sweep_grid(v);
     }
+    plan(planned, rounds > 0);
     return keep();
   }
 
  private:
-  int count_unsettled() const {
-    return static_cast<int>(std::count_if(scratch_.change.begin(), scratch_.change.end(), [&](double c) { return !(c <= tolerance_); }));
+  // The next step's sweeps: as many of the grid as this step took, one less where the last of them was not needed. Sweeps that are planned
+  // go row by row in the cache.
+  void plan(std::size_t planned, bool settled_more) {
+    const int made = static_cast<int>(count_) - (count_ == planned && !settled_more);
+    state_.planned_sweeps = std::clamp(made, least_, std::max(least_, most_planned));
+  }
+  bool is_settled(int j) const { return scratch_.change[static_cast<std::size_t>(j)] <= tolerance_; }
+  void find_unsettled() {
+    unsettled_.clear();
+    for (int j = 0; j < static_cast<int>(scratch_.change.size()); ++j)
+      if (!is_settled(j)) unsettled_.push_back(j);
   }
   void settle_rows(const View<Real>& v) {
-    std::vector<double>& change = scratch_.change;
-    scratch_.change_before = change;
+    std::vector<int>& near = scratch_.rows_near;
+    near.clear();
+    for (const int row : unsettled_)
+      for (int j = std::max({row - 1, 0, near.empty() ? 0 : near.back() + 1}); j <= std::min(row + 1, v.rows - 1); ++j) near.push_back(j);
+    unsettled_.clear();
     ++state_.sweeps;
-    for (int j = 0; j < v.rows; ++j)
-      if (is_worked_on(v, j) && moved_near(j, v.rows)) change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
+    for (const int j : near) {
+      if (!is_worked_on(v, j)) continue;
+      scratch_.change[static_cast<std::size_t>(j)] = kernels_.settle(v, j, fields_[count_ % 2]);
+      if (!is_settled(j)) unsettled_.push_back(j);
+    }
     stale_ = true;
   }
   void sweep_grid(const View<Real>& v) {
@@ -90,10 +110,7 @@ class Sweeps {
     begin(true);
     for (int j = 0; j < v.rows; ++j)
       if (is_worked_on(v, j)) row(v, count_ - 1, j);
-  }
-  bool moved_near(int j, int rows) const {
-    const double* change = scratch_.change_before.data() + j;
-    return !(change[0] <= tolerance_) || (j > 0 && !(change[-1] <= tolerance_)) || (j + 1 < rows && !(change[1] <= tolerance_));
+    find_unsettled();
   }
   // The fields take their places.
   Result<void> keep() {
@@ -112,8 +129,10 @@ class Sweeps {
 
   State<Real>& state_;
   Scratch<Real>& scratch_;
+  std::vector<int>& unsettled_;  // rows, from the bottom up
   const Kernels<Real>& kernels_;
   double tolerance_;
+  int least_;
   bool local_;
   double radius_;
   ChebyshevWeight weight_;
@@ -145,7 +164,7 @@ Result<void> move_and_sweep(const Model& model, State<Real>& state, Scratch<Real
   const Real* psi = state.psi.data() + at;
   Real* previous = state.psi_previous.data() + at;
   Sweeps<Real> sweeps(model, state, scratch, kernels);
-  const int count = model.damage_sweeps;
+  const int count = std::max(state.planned_sweeps, model.damage_sweeps);
   for (int k = 0; k < count; ++k) sweeps.begin(k + 1 == count);
   scratch.kept = 0.0;
   for (int front = 0; front < v.rows + count; ++front) {

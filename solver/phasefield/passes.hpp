@@ -13,10 +13,10 @@ inline constexpr int damage_sweeps_limit = 1000;
 // works on H, s, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone that yield, or nearly do, or whose psi moved by more
 // than the model's moved_damage in four steps; the others rest: they keep theirs. All nodes move and feel forces in every step.
 
-// The step from n to n + 1: u += dt v, H from u, and psi from H: a few matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi, then
-// more sweeps of those rows alone whose correction |z - psi|, with z the Jacobi image of psi, is above the model's tolerance, and of their
-// neighbours. The corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution; what the sweeps leave beyond is
-// cut. Replaces psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
+// The step from n to n + 1: u += dt v, H from u, and psi from H: as many matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi as
+// the step before took, then more sweeps of those rows alone whose correction |z - psi|, with z the Jacobi image of psi, is above the
+// model's tolerance, and of their neighbours. The corner-quadrature operator is an M-matrix, so that 0 <= psi <= 1 holds for its solution;
+// what the sweeps leave beyond is cut. Replaces psi and moves the old field to psi_previous. Errors: SOLVER_NUMERIC past the sweeps limit.
 template <class Real>
 Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n,
                              double dt);

@@ -180,6 +180,7 @@ void PhaseField<Real>::save(ArchiveWriter& archive) const {
   archive.put(state_.sums);
   archive.put(state_.damages);
   archive.put(state_.whole);
+  archive.put(state_.planned_sweeps);
   archive.put(state_.sweeps);
 }
 
@@ -195,6 +196,7 @@ bool PhaseField<Real>::load(ArchiveReader& archive, long long n, double dt) {
   state_.sums = archive.get<StepSums>();
   state_.damages = archive.get<bool>();
   state_.whole = archive.get<bool>();
+  state_.planned_sweeps = archive.get<int>();
   state_.sweeps = archive.get<long long>();
   if (archive.failed()) return false;
   refresh(model_, state_, scratch_, kernels_, n, dt);

@@ -179,6 +179,7 @@ Scratch<Real> make_scratch(const Model& model) {
   scratch.moving.runs.reserve(static_cast<std::size_t>(model.grid.rows) * static_cast<std::size_t>(model.grid.tiles() / 2 + 1));
   scratch.gives.assign((static_cast<std::size_t>(model.grid.rows) + 2) * static_cast<std::size_t>(model.grid.tiles()), gives_nothing);
   scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
+  for (std::vector<int>* rows : {&scratch.unsettled_rows, &scratch.rows_near}) rows->reserve(static_cast<std::size_t>(model.grid.rows));
   scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
   std::size_t held = 0;
   for (const Motion& motion : model.boundary.motions) held += motion.nodes.size();

@@ -37,6 +37,7 @@ struct State {
   double released = 0.0;         // J/m since t = 0
   double initial_energy = 0.0;   // J/m before the boundary moved
   double initial_surface = 0.0;  // J/m of the initial cracks
+  int planned_sweeps = 0;        // of psi in the next step
   long long sweeps = 0;          // of the psi equation since t = 0
 };
 
@@ -70,12 +71,13 @@ struct Scratch {
   std::vector<unsigned char> gives;  // see View; from row -1 on
   RunList moving;                    // tiles that light steps work on
   Field<Real> source, inverse_diagonal, stored_before, degradation, fx, fz, psi_other;
-  Field<Real> rows;                           // scratch_rows rows for the kernels
-  std::vector<double> held_force;             // force on held nodes before the step, in the order of the motions
-  std::vector<double> change, change_before;  // by row: correction of its last sweep
-  long long solves = 0, last_whole = 0;       // of psi so far, and the last one of all tiles, as CrackMarks counts them
-  double kept = 0.0;                          // J/m, energy that damage cannot release
-  double released = 0.0;                      // J/m, in the last step
+  Field<Real> rows;                            // scratch_rows rows for the kernels
+  std::vector<double> held_force;              // force on held nodes before the step, in the order of the motions
+  std::vector<double> change;                  // by row: correction of its last sweep
+  std::vector<int> unsettled_rows, rows_near;  // where it is too large; these and those beside them
+  long long solves = 0, last_whole = 0;        // of psi so far, and the last one of all tiles, as CrackMarks counts them
+  double kept = 0.0;                           // J/m, energy that damage cannot release
+  double released = 0.0;                       // J/m, in the last step
   StageClock<Stage, stage_names.size()> clock{};
 };
 

@@ -100,6 +100,25 @@ TEST_CASE("in light steps tiles that rest keep their damage and history, others 
   }
 }
 
+TEST_CASE("however many sweeps a step plans after the step before, every row's last correction is within the tolerance") {
+  using namespace phasefield;
+  PhaseField<double> run(cracked("pbx", 64), chosen_kernels<double>());
+  const double dt = 0.9 * run.stable_dt();
+  REQUIRE(run.start(dt));
+  const int least = run.model().damage_sweeps;
+  int more = 0, fewer = 0;
+  for (int n = 0; n < 400; ++n) {
+    const int planned = run.state().planned_sweeps;
+    REQUIRE(run.step(n, dt));
+    const std::vector<double>& change = run.scratch().change;
+    CHECK(*std::max_element(change.begin(), change.end()) <= run.model().damage_tolerance);
+    if (run.state().damages) CHECK(run.state().planned_sweeps >= least);
+    more += run.state().planned_sweeps > std::max(planned, least), fewer += run.state().planned_sweeps < planned;
+  }
+  CHECK(more > 5);
+  CHECK(fewer > 5);
+}
+
 TEST_CASE("crack marks are those of the damage, asked after every step, now and then, and after a restart, and say where they changed") {
   using namespace phasefield;
   const Scene scene = cracked("pbx", 64);
