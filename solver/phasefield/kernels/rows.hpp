@@ -98,12 +98,12 @@ INLINE double ordered_sum(const Partial& part) {
   return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
-// Of the numbers of a tile.
+// Of the numbers of a tile; the order does not matter.
 INLINE Real largest(const Real* x) {
-  Real eight[8], four[4];
-  for (int l = 0; l < 8; ++l) eight[l] = larger(x[l], x[l + 8]);
-  for (int l = 0; l < 4; ++l) four[l] = larger(eight[l], eight[l + 4]);
-  return larger(larger(four[0], four[2]), larger(four[1], four[3]));
+  Real most = x[0];
+#pragma omp simd reduction(max : most)
+  for (Index l = 0; l < lanes; ++l) most = larger(x[l], most);
+  return most;
 }
 
 // The partial sums of a row, times a factor.
