@@ -9,28 +9,38 @@ INLINE void mirror(const View& v, Real* row) {
   row[v.columns] = row[v.columns - 2];
 }
 
-INLINE Real within_bounds(Real psi) { return smaller(larger(psi, Real(0)), Real(1)); }
+INLINE Wide within_bounds(Wide psi) { return smaller(larger(psi, Wide{}), all(Real(1))); }
+INLINE Wide absolute(Wide x) { return larger(x, -x); }
+
+// body(i) for the nodes of a row that are worked on, as many as an instruction handles.
+template <class Body>
+INLINE void over_nodes(const View& v, int j, const Body& body) {
+  for (int k = v.run_begin[j]; k < v.run_begin[j + 1]; ++k)
+    for (Index i = v.runs[k].begin; i < v.runs[k].end; i += width) body(i);
+}
+#define NODES_BODY [&](Index i) __attribute__((always_inline))
 
 // z = (source + sum of c psi_neighbour) / diagonal, the Jacobi image of the equation.
 template <bool first, bool last>
 INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real omega) {
-  const NodeRow c = v.node_rows[j];
+  const NodeRow& row = v.node_rows[j];
+  const Real side = row.side, to_south = row.south, to_north = row.north;
   const Index at = row_at(v, j);
   const Real* here = psi + at;
   const Real *south = j > 0 ? here - v.stride : here + v.stride, *north = j + 1 < v.rows ? here + v.stride : here - v.stride;
-  const Real *source = v.source + at, *inverse = v.inverse_diagonal + at;
-  const Real* whole = v.whole_nodes + at;
+  const Real *source = v.source + at, *inverse = v.inverse_diagonal + at, *whole = v.whole_nodes + at;
   Real* out = next + at;
-  Partial change;
-  along_worked_tiles(
-      v, j, TILE_BODY {
-        const Real z = inverse[i] * ((source[i] + c.side * (here[i - 1] + here[i + 1])) + (c.south * south[i] + c.north * north[i]));
-        if (last) change.at[l] = larger(whole[i] * std::abs(z - here[i]), change.at[l]);
-        const Real relaxed = first ? z : out[i] + omega * (z - out[i]);
-        out[i] = last ? within_bounds(relaxed) : relaxed;
+  Wide change{};
+  over_nodes(
+      v, j, NODES_BODY {
+        const Wide along = side * (load(here + i - 1) + load(here + i + 1)), up = to_south * load(south + i) + to_north * load(north + i);
+        const Wide z = load(inverse + i) * ((load(source + i) + along) + up);
+        if (last) change = larger(load(whole + i) * absolute(z - load(here + i)), change);
+        const Wide before = load(out + i), relaxed = first ? z : before + omega * (z - before);
+        store(out + i, last ? within_bounds(relaxed) : relaxed);
       });
   mirror(v, out);
-  return last ? largest(change.at) : Real(0);
+  return last ? largest(change) : Real(0);
 }
 
 }  // namespace
@@ -38,8 +48,8 @@ INLINE Real sweep_row(const View& v, int j, const Real* psi, Real* next, Real om
 void guess(const View& v, int j, const Real* psi, Real* previous) {
   const Real* now = psi + row_at(v, j);
   Real* out = previous + row_at(v, j);
-  along_worked_tiles(
-      v, j, TILE_BODY { out[i] = within_bounds(Real(2) * now[i] - out[i]); });
+  over_nodes(
+      v, j, NODES_BODY { store(out + i, within_bounds(Real(2) * load(now + i) - load(out + i))); });
   mirror(v, out);
 }
 
@@ -52,8 +62,8 @@ double settle(const View& v, int j, Real* psi) {
   const Index at = row_at(v, j);
   Real* fresh = scratch_row(v, first_free_row);
   const Real change = sweep_row<true, true>(v, j, psi, fresh - at, Real(1));
-  along_worked_tiles(
-      v, j, TILE_BODY { psi[at + i] = fresh[i]; });
+  over_nodes(
+      v, j, NODES_BODY { store(psi + at + i, load(fresh + i)); });
   mirror(v, psi + at);
   return change;
 }
@@ -63,13 +73,12 @@ void rest(const View& v, int j, const Real* psi, Real* previous, Real* other) {
   Real *before = previous + row_at(v, j), *spare = other + row_at(v, j);
   Index flag = Index(j) * v.tiles;
   for (Index tile = 0; tile < v.padded; tile += lanes, ++flag) {
-    Partial change;
-    along_tile(
-        tile, TILE_BODY { change.at[l] = whole[i] * std::abs(now[i] - before[i]); });
-    v.moves[flag] = largest(change.at) > (v.moves[flag] ? v.moved_damage / Real(rest_steps) : v.moved_damage);
-    if (!v.moves[flag])
-      along_tile(
-          tile, TILE_BODY { before[i] = spare[i] = now[i]; });
+    const Real limit = v.moves[flag] ? v.moved_damage / Real(rest_steps) : v.moved_damage;
+    bool moves = false;
+    for (Index i = tile; i < tile + lanes; i += width)
+      moves = moves || any_above(load(whole + i) * absolute(load(now + i) - load(before + i)), limit);
+    v.moves[flag] = moves;
+    for (Index i = tile; i < tile + lanes && !moves; i += width) store(before + i, load(now + i)), store(spare + i, load(now + i));
   }
   mirror(v, before), mirror(v, spare);
 }

@@ -105,6 +105,13 @@ INLINE Real largest(const Real* x) {
   for (Index l = 0; l < lanes; ++l) most = larger(x[l], most);
   return most;
 }
+INLINE Real largest(Wide x) {
+  Real at[width], most = x[0];
+  store(at, x);
+#pragma omp simd reduction(max : most)
+  for (Index l = 0; l < width; ++l) most = larger(at[l], most);
+  return most;
+}
 
 // The partial sums of a row, times a factor.
 INLINE void add(Parts& sum, const Partial& part, double factor) {

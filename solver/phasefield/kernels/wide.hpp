@@ -37,7 +37,7 @@ INLINE Wide load(const Real* x) {
 INLINE void store(Real* x, Wide numbers) { __builtin_memcpy(x, &numbers, sizeof numbers); }
 INLINE Wide all(Real number) { return Wide{} + number; }
 
-// a > b ? a : b, of which the compiler makes a comparison and a choice.
+// a > b ? a : b, and a < b ? a : b, of which the compiler makes a comparison and a choice.
 INLINE Wide larger(Wide a, Wide b) {
 #if defined(__AVX512F__)
   if constexpr (sizeof(Real) == 8)
@@ -51,6 +51,21 @@ INLINE Wide larger(Wide a, Wide b) {
     return (Wide)_mm256_max_ps((__m256)a, (__m256)b);
 #else
   return a > b ? a : b;
+#endif
+}
+INLINE Wide smaller(Wide a, Wide b) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(Real) == 8)
+    return (Wide)_mm512_maskz_min_pd(0xff, (__m512d)a, (__m512d)b);
+  else
+    return (Wide)_mm512_maskz_min_ps(0xffff, (__m512)a, (__m512)b);
+#elif defined(__AVX__)
+  if constexpr (sizeof(Real) == 8)
+    return (Wide)_mm256_min_pd((__m256d)a, (__m256d)b);
+  else
+    return (Wide)_mm256_min_ps((__m256)a, (__m256)b);
+#else
+  return a < b ? a : b;
 #endif
 }
 
