@@ -169,6 +169,8 @@ struct Kernels {
   // Surface functional: what the nodes of some rows among elements of one surface law (see Tables), and the edges along these rows and up
   // to the next, add to it.
   void (*surface)(const View<Real>&, int begin, int end, const Real* psi, SurfaceParts&);
+  // True where a mark is not what `psi > limit` is at its node.
+  bool (*differs)(const Real* psi, Real limit, const unsigned char* marks, int count);
 };
 
 // Paths that this processor runs, best first; the last is the baseline, which every processor runs.

@@ -59,16 +59,6 @@ void copy_rows(const Grid& grid, const From* from, To* to) {
     std::copy_n(from + grid.index(0, j), grid.columns, to + static_cast<std::ptrdiff_t>(j) * grid.columns);
 }
 
-// Of `count` nodes from `first` on.
-template <class Real>
-void mark_above(Real limit, const Real* __restrict values, int first, int count, CrackMarks& marks) {
-  unsigned char* __restrict cracked = marks.cracked.data() + first;
-  unsigned char changed = 0;
-  for (int i = 0; i < count; ++i) changed = static_cast<unsigned char>(changed | ((values[i] > limit) ^ cracked[i]));
-  for (int i = 0; i < count && changed; ++i)
-    if (std::exchange(cracked[i], values[i] > limit) != (values[i] > limit)) marks.changed.push_back(first + i);
-}
-
 }  // namespace
 
 template <class Real>
@@ -143,7 +133,12 @@ void PhaseField<Real>::mark_cracked(double threshold, CrackMarks& marks) const {
   for (int j = 0; j < grid.rows; ++j)
     for (int k = runs.begin[static_cast<std::size_t>(j)]; k < runs.begin[static_cast<std::size_t>(j) + 1]; ++k) {
       const auto [begin, end] = runs.runs[static_cast<std::size_t>(k)];
-      mark_above(limit, state_.psi.data() + grid.index(begin, j), j * grid.columns + begin, std::min(end, grid.columns) - begin, marks);
+      const Real* psi = state_.psi.data() + grid.index(begin, j);
+      const int first = j * grid.columns + begin, count = std::min(end, grid.columns) - begin;
+      unsigned char* cracked = marks.cracked.data() + first;
+      if (!kernels_.differs(psi, limit, cracked, count)) continue;
+      for (int i = 0; i < count; ++i)
+        if (std::exchange(cracked[i], psi[i] > limit) != (psi[i] > limit)) marks.changed.push_back(first + i);
     }
 }
 

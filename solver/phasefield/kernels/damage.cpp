@@ -134,4 +134,11 @@ void surface(const View& v, int begin, int end, const Real* psi, SurfaceParts& s
     surface_rows<true>(v, begin, end, psi, sums);
 }
 
+bool differs(const Real* psi, Real limit, const unsigned char* marks, int count) {
+  unsigned char any = 0;
+#pragma omp simd reduction(| : any)
+  for (int i = 0; i < count; ++i) any = static_cast<unsigned char>(any | ((psi[i] > limit) ^ marks[i]));
+  return any != 0;
+}
+
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

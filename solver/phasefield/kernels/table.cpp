@@ -16,6 +16,7 @@ void degrade(const View&, int j, const Real* psi, const Real* before, Sums&);
 void force(const View&, int j, Sums&);
 void kick(const View&, int first, int end, Real dt, Sums&);
 void surface(const View&, int begin, int end, const Real* psi, SurfaceParts&);
+bool differs(const Real* psi, Real limit, const unsigned char* marks, int count);
 
 #define FRACFARM_TEXT_OF(name) #name
 #define FRACFARM_TEXT(name) FRACFARM_TEXT_OF(name)
@@ -34,6 +35,7 @@ const Kernels<Real> table{FRACFARM_TEXT(FRACFARM_ISA),
                           degrade,
                           force,
                           kick,
-                          surface};
+                          surface,
+                          differs};
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS
