@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#if defined(__AVX__)
+#ifdef __AVX__
 #include <immintrin.h>
 #endif
 
@@ -16,17 +16,20 @@ namespace fracfarm::phasefield::FRACFARM_KERNELS {
 using Real = FRACFARM_REAL;
 using Index = long;
 
-#if defined(__AVX512F__)
-inline constexpr Index width = 64 / sizeof(Real);
-#elif defined(__AVX__)
-inline constexpr Index width = 32 / sizeof(Real);
+#ifdef __AVX512F__
+inline constexpr Index bytes_wide = 64;
 #else
-inline constexpr Index width = 16 / sizeof(Real);
+#ifdef __AVX__
+inline constexpr Index bytes_wide = 32;
+#else
+inline constexpr Index bytes_wide = 16;
 #endif
+#endif
+inline constexpr Index width = bytes_wide / Index(sizeof(Real));
 
 using Flag = std::conditional_t<sizeof(Real) == 8, long, int>;
-typedef Real Wide __attribute__((vector_size(width * Index(sizeof(Real)))));
-typedef Flag WideFlags __attribute__((vector_size(width * Index(sizeof(Real)))));
+typedef Real Wide __attribute__((vector_size(bytes_wide)));
+typedef Flag WideFlags __attribute__((vector_size(bytes_wide)));
 
 // From and to any address.
 INLINE Wide load(const Real* x) {
@@ -37,74 +40,45 @@ INLINE Wide load(const Real* x) {
 INLINE void store(Real* x, Wide numbers) { __builtin_memcpy(x, &numbers, sizeof numbers); }
 INLINE Wide all(Real number) { return Wide{} + number; }
 
-// a > b ? a : b, and a < b ? a : b, of which the compiler makes a comparison and a choice.
-INLINE Wide larger(Wide a, Wide b) {
-#if defined(__AVX512F__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm512_maskz_max_pd(0xff, (__m512d)a, (__m512d)b);
-  else
-    return (Wide)_mm512_maskz_max_ps(0xffff, (__m512)a, (__m512)b);
-#elif defined(__AVX__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm256_max_pd((__m256d)a, (__m256d)b);
-  else
-    return (Wide)_mm256_max_ps((__m256)a, (__m256)b);
+// What the compiler has no operator for, or makes a comparison and a choice of: a > b ? a : b, a < b ? a : b, a root, any x > limit.
+#ifdef __AVX512F__
+INLINE __m512 maximum(__m512 a, __m512 b) { return _mm512_maskz_max_ps(0xffff, a, b); }
+INLINE __m512d maximum(__m512d a, __m512d b) { return _mm512_maskz_max_pd(0xff, a, b); }
+INLINE __m512 minimum(__m512 a, __m512 b) { return _mm512_maskz_min_ps(0xffff, a, b); }
+INLINE __m512d minimum(__m512d a, __m512d b) { return _mm512_maskz_min_pd(0xff, a, b); }
+INLINE __m512 square_root(__m512 x) { return _mm512_maskz_sqrt_ps(0xffff, x); }
+INLINE __m512d square_root(__m512d x) { return _mm512_maskz_sqrt_pd(0xff, x); }
+INLINE bool exceeds(__m512 x, __m512 limit) { return _mm512_cmp_ps_mask(x, limit, _CMP_GT_OQ) != 0; }
+INLINE bool exceeds(__m512d x, __m512d limit) { return _mm512_cmp_pd_mask(x, limit, _CMP_GT_OQ) != 0; }
 #else
-  return a > b ? a : b;
-#endif
-}
-INLINE Wide smaller(Wide a, Wide b) {
-#if defined(__AVX512F__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm512_maskz_min_pd(0xff, (__m512d)a, (__m512d)b);
-  else
-    return (Wide)_mm512_maskz_min_ps(0xffff, (__m512)a, (__m512)b);
-#elif defined(__AVX__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm256_min_pd((__m256d)a, (__m256d)b);
-  else
-    return (Wide)_mm256_min_ps((__m256)a, (__m256)b);
+#ifdef __AVX__
+INLINE __m256 maximum(__m256 a, __m256 b) { return _mm256_max_ps(a, b); }
+INLINE __m256d maximum(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
+INLINE __m256 minimum(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
+INLINE __m256d minimum(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
+INLINE __m256 square_root(__m256 x) { return _mm256_sqrt_ps(x); }
+INLINE __m256d square_root(__m256d x) { return _mm256_sqrt_pd(x); }
+INLINE bool exceeds(__m256 x, __m256 limit) { return _mm256_movemask_ps(_mm256_cmp_ps(x, limit, _CMP_GT_OQ)) != 0; }
+INLINE bool exceeds(__m256d x, __m256d limit) { return _mm256_movemask_pd(_mm256_cmp_pd(x, limit, _CMP_GT_OQ)) != 0; }
 #else
-  return a < b ? a : b;
-#endif
-}
-
-INLINE Wide root(Wide x) {
-#if defined(__AVX512F__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
-  else
-    return (Wide)_mm512_maskz_sqrt_ps(0xffff, (__m512)x);
-#elif defined(__AVX__)
-  if constexpr (sizeof(Real) == 8)
-    return (Wide)_mm256_sqrt_pd((__m256d)x);
-  else
-    return (Wide)_mm256_sqrt_ps((__m256)x);
-#else
+INLINE Wide maximum(Wide a, Wide b) { return a > b ? a : b; }
+INLINE Wide minimum(Wide a, Wide b) { return a < b ? a : b; }
+INLINE Wide square_root(Wide x) {
   Wide r;
   for (Index l = 0; l < width; ++l) r[l] = std::sqrt(x[l]);
   return r;
-#endif
 }
+INLINE bool exceeds(Wide x, Wide limit) {
+  bool found = false;
+  for (Index l = 0; l < width; ++l) found = found || x[l] > limit[l];
+  return found;
+}
+#endif
+#endif
 
-// True where a number of x is more than the limit.
-INLINE bool any_above(Wide x, Real limit) {
-  const Wide bound = all(limit);
-#if defined(__AVX512F__)
-  if constexpr (sizeof(Real) == 8)
-    return _mm512_cmp_pd_mask((__m512d)x, (__m512d)bound, _CMP_GT_OQ) != 0;
-  else
-    return _mm512_cmp_ps_mask((__m512)x, (__m512)bound, _CMP_GT_OQ) != 0;
-#elif defined(__AVX__)
-  if constexpr (sizeof(Real) == 8)
-    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)x, (__m256d)bound, _CMP_GT_OQ)) != 0;
-  else
-    return _mm256_movemask_ps(_mm256_cmp_ps((__m256)x, (__m256)bound, _CMP_GT_OQ)) != 0;
-#else
-  Flag found = 0;
-  for (Index l = 0; l < width; ++l) found |= x[l] > bound[l];
-  return found != 0;
-#endif
-}
+INLINE Wide larger(Wide a, Wide b) { return maximum(a, b); }
+INLINE Wide smaller(Wide a, Wide b) { return minimum(a, b); }
+INLINE Wide root(Wide x) { return square_root(x); }
+INLINE bool any_above(Wide x, Real limit) { return exceeds(x, all(limit)); }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS
