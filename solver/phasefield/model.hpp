@@ -28,7 +28,7 @@ struct Model {
   double jacobi_radius = 0.0;     // bound of the Jacobi iteration's spectral radius
   double damage_tolerance = 0.0;  // largest |z - psi| of a row's last sweep, z the Jacobi image of psi
   int damage_sweeps = 0;          // of the whole grid in a step, at least; more where the tolerance asks for it
-  double moved_damage = 0.0;      // of psi in rest_steps steps; what moves less and does not yield rests, see passes.hpp
+  double moved_damage = 0.0;      // of psi in rest_steps steps; what moves less rests, see passes.hpp
   Rules rules;
   bool keeps_forces = false;  // verification: forces of all nodes are stored, not of the sides only
 };

@@ -207,17 +207,18 @@ Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Rea
 }
 
 template <class Real>
-void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
-  const View<Real> v = view(model, state, scratch);
-  for (int j = 0; j < v.rows; ++j) kernels.drift(v, j, Real(0));  // places the ghosts
-  scratch.kept = 0.0;
-  for (int j = 0; j < v.rows; ++j) scratch.kept += kernels.history(v, j);
-}
-
-template <class Real>
 void set_equation(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
   const View<Real> v = view(model, state, scratch);
   for (int j = 0; j < v.rows; ++j) kernels.equation(v, j);
+}
+
+template <class Real>
+void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels) {
+  const View<Real> v = view(model, state, scratch);
+  for (int j = 0; j < v.rows; ++j) kernels.drift(v, j, Real(0));  // places the ghosts
+  set_equation(model, state, scratch, kernels);
+  scratch.kept = 0.0;
+  for (int j = 0; j < v.rows; ++j) scratch.kept += kernels.history(v, j);
 }
 
 template <class Real>

@@ -10,8 +10,9 @@ namespace fracfarm::phasefield {
 inline constexpr int damage_sweeps_limit = 1000;
 
 // Where nothing much happens less is done: once psi may rise, three of four steps are light, and only the fourth is whole. A light step
-// works on H, s, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone that yield, or nearly do, or whose psi moved by more
-// than the model's moved_damage in four steps; the others rest: they keep theirs. All nodes move and feel forces in every step.
+// works on H, psi and g of those tiles (`lanes` neighbouring nodes of a row) alone whose psi moved by more than the model's moved_damage in
+// four steps; the others rest: they keep theirs. All nodes move and feel forces in every step, those of tiles that yield, or nearly did in
+// the last whole step, by the secant law of the strain as it is.
 
 // The step from n to n + 1: u += dt v, H from u, and psi from H: as many matrix-free Chebyshev-Jacobi sweeps from the extrapolated psi as
 // the step before took, then more sweeps of those rows alone whose correction |z - psi|, with z the Jacobi image of psi, is above the
@@ -21,11 +22,11 @@ template <class Real>
 Result<void> move_and_damage(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels, long long n,
                              double dt);
 
-// The psi equation of H as it is; for a start.
+// The psi equation of H as it is: after a restart.
 template <class Real>
 void set_equation(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
 
-// H, energies and the psi equation of u as it is.
+// H, energies and the psi equation of u as it is: a start.
 template <class Real>
 void strain(const Model& model, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels);
 

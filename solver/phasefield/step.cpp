@@ -97,7 +97,6 @@ template <class Real>
 Result<void> start(const Model& model, const Initial& initial, State<Real>& state, Scratch<Real>& scratch, const Kernels<Real>& kernels,
                    double dt) {
   set_initial_fields(model, initial, state);
-  set_equation(model, state, scratch, kernels);
   strain(model, state, scratch, kernels);
   if (auto solved = solve_damage(model, state, scratch, kernels); !solved) return solved;
   state.psi_previous = state.psi;

@@ -88,7 +88,6 @@ TEST_CASE("the matrix-free psi solve agrees with a direct factorisation on layer
   Scratch<double> scratch = make_scratch<double>(model);
   draw_history(model, state);
   const Kernels<double>& kernels = chosen_kernels<double>();
-  set_equation(model, state, scratch, kernels);
   strain(model, state, scratch, kernels);
   REQUIRE(solve_damage(model, state, scratch, kernels));
   const std::vector<double> direct = solve_directly(scene, model, state);

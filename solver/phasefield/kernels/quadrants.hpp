@@ -53,7 +53,8 @@ INLINE Quarters yield_forms(const Between& row, const Differences& d) {
 // sigma_y / q past yield, 1 before it.
 INLINE Wide yield_over_q(Wide p) { return Real(1) / root(larger(p, all(Real(1)))); }
 
-// Tiles that will yield before long do not rest: what they took up elastically past sigma_y the potential would not give back. Of p.
+// Tiles that will yield before long are looked at in every step: what they took up elastically past sigma_y the potential would not give
+// back. Of p.
 constexpr Real near_yield = Real(0.5);
 
 // At least p of the four quadrants, from the largest squares around a node: |x z| <= (x^2 + z^2) / 2.
