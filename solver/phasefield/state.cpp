@@ -1,6 +1,8 @@
 #include "solver/phasefield/state.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 
 namespace fracfarm::phasefield {
 namespace {
@@ -181,9 +183,8 @@ Scratch<Real> make_scratch(const Model& model) {
   scratch.change.assign(static_cast<std::size_t>(model.grid.rows), 0.0);
   for (std::vector<int>* rows : {&scratch.unsettled_rows, &scratch.rows_near}) rows->reserve(static_cast<std::size_t>(model.grid.rows));
   scratch.rows.assign(static_cast<std::size_t>(scratch_rows * model.grid.stride() + lanes), Real(0));
-  std::size_t held = 0;
-  for (const Motion& motion : model.boundary.motions) held += motion.nodes.size();
-  scratch.held_force.assign(held, 0.0);
+  scratch.held_force.assign(model.boundary.motions.size(), 0.0);
+  scratch.held_velocity.assign(model.boundary.motions.size(), std::numeric_limits<Real>::quiet_NaN());
   return scratch;
 }
 
@@ -193,7 +194,8 @@ void find_moving(const Grid& grid, State<Real>& state, Scratch<Real>& scratch) {
   list.begin.assign(1, 0), list.runs.clear();
   for (int j = 0; j < grid.rows; ++j) {
     unsigned char* moves = state.moves.data() + static_cast<std::ptrdiff_t>(j) * grid.tiles();
-    for (int t = 0; t < grid.tiles(); ++t) {
+    const bool some = std::memchr(moves, 1, static_cast<std::size_t>(grid.tiles())) != nullptr;
+    for (int t = 0; t < grid.tiles() && some; ++t) {
       if (!moves[t]) continue;
       const bool first = static_cast<int>(list.runs.size()) == list.begin.back();
       if (first || t * lanes > list.runs.back().end + lanes)

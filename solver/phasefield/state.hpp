@@ -56,7 +56,7 @@ struct Tables {
   std::vector<ElementRow<Real>> element_rows;
   std::vector<NodeRow<Real>> node_rows;
   RunList whole_rows;
-  std::vector<Run> strips;  // of rows that are kicked together: of one kind among elements of one kind, or one row
+  std::vector<Run> strips;        // of rows that are kicked together: of one kind among elements of one kind, or one row
   std::vector<Run> surface_rows;  // rows whose elements below are of one surface law, and those above
   Field<Real> column_weight, whole;
   std::vector<Field<Real>> inverse_masses;  // rows; equal ones are stored once
@@ -72,7 +72,8 @@ struct Scratch {
   RunList moving;                    // tiles that light steps work on
   Field<Real> source, inverse_diagonal, stored_before, degradation, fx, fz, psi_other;
   Field<Real> rows;                            // scratch_rows rows for the kernels
-  std::vector<double> held_force;              // force on held nodes before the step, in the order of the motions
+  std::vector<double> held_force;              // by motion: sum of the forces on its nodes after the last step, N/m
+  std::vector<Real> held_velocity;             // by motion: of its nodes, m/s; not a number before it is set
   std::vector<double> change;                  // by row: correction of its last sweep
   std::vector<int> unsettled_rows, rows_near;  // where it is too large; these and those beside them
   long long solves = 0, last_whole = 0;        // of psi so far, and the last one of all tiles, as CrackMarks counts them

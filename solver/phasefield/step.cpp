@@ -12,12 +12,15 @@ Field<Real>& along(Axis axis, Field<Real>& x, Field<Real>& z) {
   return axis == Axis::x ? x : z;
 }
 
-// Velocities of held nodes for the half step around `time`; returns the kinetic energy that the boundary gave them, J/m.
+// Velocities of held nodes for the half step around `time`; returns the kinetic energy that the boundary gave them, J/m. No force moves a
+// held node: it keeps what it was given until that changes.
 template <class Real>
-double drive(const Model& model, State<Real>& state, double time) {
+double drive(const Model& model, State<Real>& state, Scratch<Real>& scratch, double time) {
   double gained = 0.0;
-  for (const Motion& motion : model.boundary.motions) {
+  for (std::size_t k = 0; k < model.boundary.motions.size(); ++k) {
+    const Motion& motion = model.boundary.motions[k];
     const Real velocity = static_cast<Real>(motion.at(time));
+    if (std::exchange(scratch.held_velocity[k], velocity) == velocity) continue;
     Field<Real>& v = along(motion.axis, state.vx, state.vz);
     for (const std::size_t n : motion.nodes) {
       const double now = velocity, before = v[n];
@@ -29,21 +32,25 @@ double drive(const Model& model, State<Real>& state, double time) {
 }
 
 template <class Real>
+double held_force(const Motion& motion, const Scratch<Real>& scratch) {
+  const Field<Real>& f = motion.axis == Axis::x ? scratch.fx : scratch.fz;
+  double sum = 0.0;
+  for (const std::size_t n : motion.nodes) sum += static_cast<double>(f[n]);
+  return sum;
+}
+
+template <class Real>
 void remember_held_forces(const Model& model, Scratch<Real>& scratch) {
-  std::size_t k = 0;
-  for (const Motion& motion : model.boundary.motions)
-    for (const std::size_t n : motion.nodes) scratch.held_force[k++] = along(motion.axis, scratch.fx, scratch.fz)[n];
+  for (std::size_t k = 0; k < model.boundary.motions.size(); ++k) scratch.held_force[k] = held_force(model.boundary.motions[k], scratch);
 }
 
 // Work of the boundary on held nodes over the step that moved them, by the trapezoidal rule. J/m.
 template <class Real>
-double work_of_motions(const Model& model, State<Real>& state, Scratch<Real>& scratch, double dt) {
+double work_of_motions(const Model& model, Scratch<Real>& scratch, double dt) {
   double work = 0.0;
-  std::size_t k = 0;
-  for (const Motion& motion : model.boundary.motions) {
-    const Field<Real>&f = along(motion.axis, scratch.fx, scratch.fz), &v = along(motion.axis, state.vx, state.vz);
-    for (const std::size_t n : motion.nodes)
-      work -= 0.5 * (scratch.held_force[k++] + static_cast<double>(f[n])) * dt * static_cast<double>(v[n]);
+  for (std::size_t k = 0; k < model.boundary.motions.size(); ++k) {
+    const double now = held_force(model.boundary.motions[k], scratch), before = std::exchange(scratch.held_force[k], now);
+    work -= 0.5 * (before + now) * dt * static_cast<double>(scratch.held_velocity[k]);
   }
   return work;
 }
@@ -105,9 +112,10 @@ Result<void> start(const Model& model, const Initial& initial, State<Real>& stat
   const SurfaceSum at_start = surface(model, state, scratch, kernels);
   state.initial_energy = state.sums.kinetic + state.sums.elastic;
   state.initial_surface = at_start.local + at_start.gradient;
-  state.external_work = drive(model, state, 0.0);
+  state.external_work = drive(model, state, scratch, 0.0);
   state.sums.kinetic += state.external_work;
   respond(model, state, scratch, kernels, 0.5 * dt);
+  remember_held_forces(model, scratch);
   return {};
 }
 
@@ -116,8 +124,7 @@ Result<void> step(const Model& model, State<Real>& state, Scratch<Real>& scratch
   const double now = static_cast<double>(n) * dt, next = static_cast<double>(n + 1) * dt;
   StageClock<Stage, stage_names.size()>& clock = scratch.clock;
   clock.begin();
-  remember_held_forces(model, scratch);
-  state.external_work += drive(model, state, now + 0.5 * dt) + work_of_tractions(model, state, now, next, dt);
+  state.external_work += drive(model, state, scratch, now + 0.5 * dt) + work_of_tractions(model, state, now, next, dt);
   clock.end(Stage::drive);
   if (auto damaged = move_and_damage(model, state, scratch, kernels, n, dt); !damaged) return damaged;
   clock.end(Stage::damage);
@@ -125,7 +132,7 @@ Result<void> step(const Model& model, State<Real>& state, Scratch<Real>& scratch
   state.sums = respond(model, state, scratch, kernels, dt);
   clock.end(Stage::force);
   state.released += scratch.released;
-  state.external_work += work_of_motions(model, state, scratch, dt);
+  state.external_work += work_of_motions(model, scratch, dt);
   clock.end(Stage::ledger);
   return {};
 }
@@ -139,6 +146,7 @@ void refresh(const Model& model, State<Real>& state, Scratch<Real>& scratch, con
   pull(model, scratch, static_cast<double>(n) * dt);
   const bool whole = std::exchange(state.whole, true);  // g of all nodes
   respond(model, state, scratch, kernels, 0.0);
+  remember_held_forces(model, scratch);
   state.whole = whole;
 }
 

@@ -53,11 +53,12 @@ INLINE Law law_of(const View& v, int j) {
   return {v.node_rows[j].along_x, v.node_rows[j].along_z, Real(2) * c.c33, Real(2) * c.c55, c.c13, c.shear};
 }
 
-// Internal forces of linear elastic quadrants from the bottom up: each row of u and g is read once.
-template <bool at_side>
+// Internal forces of linear elastic quadrants from the bottom up: each row of u and g is read once. They move the nodes at once where
+// nothing comes on top, else are put into `forces`.
+template <bool at_side, bool moves>
 class Column {
  public:
-  INLINE Column(const View& v, int first, Index i, Forces& forces)
+  INLINE Column(const View& v, int first, Index i, Real dt, Forces& forces)
       : c_(law_of(v, first)),
         weight_(load(v.column_weight + i)),
         side_(sides(v, i)),
@@ -65,6 +66,10 @@ class Column {
         x_(v.ux + row_at(v, first) + i),
         z_(v.uz + row_at(v, first) + i),
         g_(v.degradation + row_at(v, first) + i),
+        vx_(v.vx + row_at(v, first) + i),
+        vz_(v.vz + row_at(v, first) + i),
+        per_mass_x_(dt * load(v.inverse_mass_x[first] + i)),
+        per_mass_z_(dt * load(v.inverse_mass_z[first] + i)),
         forces_(forces) {}
 
   INLINE void run(int rows) {
@@ -77,6 +82,7 @@ class Column {
   }
 
   INLINE Wide stress_xx() const { return c_.along_x * stretch_x_ + Real(2) * c_.c13 * stretch_z_; }
+  INLINE Wide square() const { return square_; }  // sum of the squares of twice the mean velocity
   INLINE Wide stress_zz() const { return c_.c33 * stretch_z_ + Real(2) * c_.c13 * stretch_x_; }
 
  private:
@@ -100,9 +106,21 @@ class Column {
     Wide up_z = c_.c33 * (above.z - below_.z) + c_.c13 * (next.x_across - south.x_across);
     Wide stretch_x = here.x_across, stretch_z = here.g * rise_z;
     if (at_side) up_x *= weight_, up_z *= weight_, stretch_x *= weight_, stretch_z *= weight_;
-    forces_.x[k] = (along_x + cross_x) + up_x, forces_.z[k] = (along_z + cross_z) + up_z;
+    const Wide fx = (along_x + cross_x) + up_x, fz = (along_z + cross_z) + up_z;
+    if (moves)
+      move(fx, fz);
+    else
+      forces_.x[k] = fx, forces_.z[k] = fz;
     stretch_x_ += stretch_x, stretch_z_ += stretch_z;
     below_ = above, north = next;
+  }
+
+  INLINE void move(Wide fx, Wide fz) {
+    const Wide before_x = load(vx_), before_z = load(vz_), x = before_x + per_mass_x_ * fx, z = before_z + per_mass_z_ * fz;
+    const Wide mean_x = before_x + x, mean_z = before_z + z;
+    square_ += mean_x * mean_x + mean_z * mean_z;
+    store(vx_, x), store(vz_, z);
+    vx_ += stride_, vz_ += stride_;
   }
 
   const Law c_;
@@ -110,17 +128,22 @@ class Column {
   const Sides side_;
   const Index stride_;
   const Real *x_, *z_, *g_;
+  Real *vx_, *vz_;
+  const Wide per_mass_x_, per_mass_z_;
   Forces& forces_;
   WideForce below_;
-  Wide stretch_x_{}, stretch_z_{};
+  Wide stretch_x_{}, stretch_z_{}, square_{};
 };
 
-// What yielding gives to the forces of a strip's nodes.
-INLINE void add_yielding(const View& v, int first, int end, Index i, Forces& f) {
+// True where yielding gives something to the forces of a strip's nodes.
+INLINE bool is_given(const View& v, int first, int end, Index i) {
   const unsigned char* gives = v.gives + Index(first - 1) * v.tiles + i / lanes;
   unsigned char any = gives_nothing;
   for (int j = first - 1; j <= end; ++j, gives += v.tiles) any |= *gives;
-  if (any == gives_nothing) return;
+  return any != gives_nothing;
+}
+
+INLINE void add_yielding(const View& v, int first, int end, Index i, Forces& f) {
   for (int j = first; j < end; ++j) add_half_edges(v, j, i, f.x[j - first], f.z[j - first]);
 }
 
@@ -147,18 +170,33 @@ INLINE Wide move_on(const View& v, int first, int end, Index i, const Forces& f,
   return sum;
 }
 
+// What a part of a tile adds to the sums.
+struct Added {
+  Wide xx, zz, square;
+};
+
+template <bool at_side>
+INLINE Added kick_part(const View& v, int first, int end, Index i, Real dt) {
+  Forces forces;
+  const bool given = is_given(v, first, end, i);
+  if (!at_side && !given && !v.keeps_forces) {
+    Column<at_side, true> column(v, first, i, dt, forces);
+    column.run(end - first);
+    return {column.stress_xx(), column.stress_zz(), column.square()};
+  }
+  Column<at_side, false> column(v, first, i, dt, forces);
+  column.run(end - first);
+  if (given) add_yielding(v, first, end, i, forces);
+  if (at_side || v.keeps_forces) store_forces(v, first, end, i, forces);
+  return {column.stress_xx(), column.stress_zz(), move_on<at_side>(v, first, end, i, forces, dt)};
+}
+
 template <bool at_side>
 INLINE void kick_tile(const View& v, int first, int end, Index tile, Real dt, Sums& sums) {
   Partial xx, zz, kinetic;
   for (Index part = 0; part < lanes; part += width) {
-    const Index i = tile + part;
-    Forces forces;
-    Column<at_side> column(v, first, i, forces);
-    column.run(end - first);
-    store(xx.at + part, column.stress_xx()), store(zz.at + part, column.stress_zz());
-    add_yielding(v, first, end, i, forces);
-    if (at_side || v.keeps_forces) store_forces(v, first, end, i, forces);
-    store(kinetic.at + part, move_on<at_side>(v, first, end, i, forces, dt));
+    const Added added = kick_part<at_side>(v, first, end, tile + part, dt);
+    store(xx.at + part, added.xx), store(zz.at + part, added.zz), store(kinetic.at + part, added.square);
   }
   add(sums.stress_xx, xx, v.hx);
   add(sums.stress_zz, zz, v.hz);
