@@ -128,10 +128,10 @@ INLINE void yielded_force(const View& v, int j, unsigned char* gives, Sums& sums
   bool found = false;
   for (Index t = 0; t < v.tiles; ++t) {
     if (!yields[t]) continue;
-    yields[t] = yielding_of(v, row.at, whole, t * lanes) == does_yield ? does_yield : nearly_yields;
-    if (yields[t] != does_yield) continue;
-    gives[t] = gives_all, found = true;
-    yielded_tile(v, row, forces, g, t * lanes, xx, zz);
+    const bool does = yielding_of(v, row.at, whole, t * lanes) == does_yield;
+    if (does) yielded_tile(v, row, forces, g, t * lanes, xx, zz);
+    yields[t] = does ? does_yield : nearly_yields, gives[t] = does ? gives_all : gives_nothing;
+    found = found || does;
   }
   if (found) finish(v, gives, out, xx, zz, sums);
 }
