@@ -15,8 +15,9 @@ INLINE Wide absolute(Wide x) { return larger(x, -x); }
 // body(i) for the nodes of a row that are worked on, as many as an instruction handles.
 template <class Body>
 INLINE void over_nodes(const View& v, int j, const Body& body) {
-  for (int k = v.run_begin[j]; k < v.run_begin[j + 1]; ++k)
-    for (Index i = v.runs[k].begin; i < v.runs[k].end; i += width) body(i);
+  const Run *run = v.runs + v.run_begin[j], *last = v.runs + v.run_begin[j + 1];
+  for (; run < last; ++run)
+    for (Index i = run->begin, end = run->end; i < end; i += width) body(i);
 }
 #define NODES_BODY [&](Index i) __attribute__((always_inline))
 

@@ -63,8 +63,10 @@ INLINE void along_tiles(Index n, const Body& body) {
 // body(tile, flag) for the tiles of a row that are worked on: its first node, and where its flags are.
 template <class Body>
 INLINE void over_tiles(const View& v, int j, const Body& body) {
-  for (int k = v.run_begin[j]; k < v.run_begin[j + 1]; ++k)
-    for (Index tile = v.runs[k].begin; tile < v.runs[k].end; tile += lanes) body(tile, Index(j) * v.tiles + tile / lanes);
+  const Run *run = v.runs + v.run_begin[j], *last = v.runs + v.run_begin[j + 1];
+  const Index first = Index(j) * v.tiles;
+  for (; run < last; ++run)
+    for (Index tile = run->begin, end = run->end; tile < end; tile += lanes) body(tile, first + tile / lanes);
 }
 template <class Body>
 INLINE void along_worked_tiles(const View& v, int j, const Body& body) {

@@ -31,13 +31,10 @@ using Flag = std::conditional_t<sizeof(Real) == 8, long, int>;
 typedef Real Wide __attribute__((vector_size(bytes_wide)));
 typedef Flag WideFlags __attribute__((vector_size(bytes_wide)));
 
-// From and to any address.
-INLINE Wide load(const Real* x) {
-  Wide numbers;
-  __builtin_memcpy(&numbers, x, sizeof numbers);
-  return numbers;
-}
-INLINE void store(Real* x, Wide numbers) { __builtin_memcpy(x, &numbers, sizeof numbers); }
+// From and to any address; a vector may stand for its numbers, a copy of bytes for anything, and then all is read again.
+typedef Real Anywhere __attribute__((vector_size(bytes_wide), aligned(sizeof(Real))));
+INLINE Wide load(const Real* x) { return *reinterpret_cast<const Anywhere*>(x); }
+INLINE void store(Real* x, Wide numbers) { *reinterpret_cast<Anywhere*>(x) = numbers; }
 INLINE Wide all(Real number) { return Wide{} + number; }
 
 // What the compiler has no operator for, or makes a comparison and a choice of: a > b ? a : b, a < b ? a : b, a root, any x > limit.
