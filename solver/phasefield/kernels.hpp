@@ -160,10 +160,10 @@ struct Kernels {
   void (*rest)(const View<Real>&, int j, const Real* psi, Real* previous, Real* other);
   // Energy that the row stores with the g that it has, J/m, with the seed's law: of tiles that rest, too.
   double (*elastic_energy)(const View<Real>&, int j);
-  // g of psi. `before` is psi one step earlier.
-  void (*degrade)(const View<Real>&, int j, const Real* psi, const Real* before, Sums&);
-  // What the row's quadrants give to the forces of rows j - 1 to j + 1 beyond linear elasticity. Needs g, and u of these rows.
-  void (*force)(const View<Real>&, int j, Sums&);
+  // g of psi in some rows. `before` is psi one step earlier.
+  void (*degrade)(const View<Real>&, int begin, int end, const Real* psi, const Real* before, Sums&);
+  // What the rows' quadrants give to the forces there and in the rows around beyond linear elasticity. Needs g, and u around.
+  void (*force)(const View<Real>&, int begin, int end, Sums&);
   // f of the rows of a strip (see Tables), and v += dt f / m, once force() has seen the rows first - 1 to end. Needs u and g of these rows.
   void (*kick)(const View<Real>&, int first, int end, Real dt, Sums&);
   // Surface functional: what the nodes of some rows among elements of one surface law (see Tables), and the edges along these rows and up

@@ -239,8 +239,8 @@ StepSums respond(const Model& model, State<Real>& state, Scratch<Real>& scratch,
   int ready = 0;
   for (const auto [first, end] : scratch.tables.strips) {
     const int needed = std::min(end + 1, v.rows);
-    for (int j = ready; j < needed; ++j) kernels.degrade(v, j, psi, before, sums);
-    for (int j = ready; j < needed; ++j) kernels.force(v, j, sums);
+    kernels.degrade(v, ready, needed, psi, before, sums);
+    kernels.force(v, ready, needed, sums);
     ready = needed;
     kernels.kick(v, first, end, step, sums);
   }

@@ -93,12 +93,12 @@ constexpr KernelRow<Real> kernel_rows[] = {
     {"degrade",
      [](Rows<Real>& r, int j) {
        Sums s;
-       r.kernels.degrade(r.view, j, r.in(), r.in(), s);
+       r.kernels.degrade(r.view, j, j + 1, r.in(), r.in(), s);
      }},
     {"force",
      [](Rows<Real>& r, int j) {
        Sums s;
-       r.kernels.force(r.view, j, s);
+       r.kernels.force(r.view, j, j + 1, s);
      }},
     {"kick",
      [](Rows<Real>& r, int j) {

@@ -4,15 +4,15 @@
 #include "solver/phasefield/kernels/quadrants.hpp"
 
 namespace fracfarm::phasefield::FRACFARM_KERNELS {
+namespace {
+
 // What a node releases in a step: (g_n - g_n+1) sqrt(W_n W_n+1). The scheme itself exchanges 1/2 eps_n : C : eps_n+1 there, which this is
 // where the strain grows in proportion; the arithmetic mean left the ledger four times as open (0.23 % against 0.06 % in shale).
-void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& sums) {
-  if (v.run_begin[j] == v.run_begin[j + 1]) return;
+INLINE void degrade_row(const View& v, int j, const Real* psi, const Real* before, Partial& released, Partial& elastic) {
   const Index at = row_at(v, j);
   const Real *now_row = psi + at, *before_row = before + at, *stored = v.stored + at, *stored_before = v.stored_before + at;
   const Real *weight = v.column_weight, eta = v.eta;
   Real* degradation = v.degradation + at;
-  Partial released, elastic;
   along_worked_tiles(
       v, j, TILE_BODY {
         const Real g = law::degradation(now_row[i], eta);
@@ -23,6 +23,14 @@ void degrade(const View& v, int j, const Real* psi, const Real* before, Sums& su
       });
   degradation[-1] = -degradation[0];
   degradation[v.columns] = -degradation[v.columns - 1];
+}
+
+}  // namespace
+
+void degrade(const View& v, int begin, int end, const Real* psi, const Real* before, Sums& sums) {
+  Partial released, elastic;
+  for (int j = begin; j < end; ++j)
+    if (v.run_begin[j] < v.run_begin[j + 1]) degrade_row(v, j, psi, before, released, elastic);
   add(sums.released, released, v.corner_area);
   add(sums.elastic, elastic, v.corner_area);
 }
@@ -73,11 +81,9 @@ INLINE void close_ends(const View& v, unsigned char* gives, const HalfEdges& out
     gives[t + 1] = gives_parts, out.west_x[end] = out.west_z[end] = Real(0);
 }
 
-INLINE void finish(const View& v, unsigned char* gives, const HalfEdges& out, const Partial& xx, const Partial& zz, Sums& sums) {
+INLINE void finish(const View& v, unsigned char* gives, const HalfEdges& out) {
   for (Index t = 0; t < v.tiles; ++t)
     if (gives[t] == gives_all) close_ends(v, gives, out, t);
-  add(sums.stress_xx, xx, v.hx);
-  add(sums.stress_zz, zz, v.hz);
 }
 
 // What yielding takes from the elastic stress: the share 1 - s of mu, the bulk modulus kept. `soft` is g times the part of mu that is lost
@@ -116,7 +122,7 @@ INLINE void yielded_tile(const View& v, const Softening& row, const QuadrantForc
 }
 
 // Tiles that yielded, or nearly, when last looked at. All flags but 0 stay in a light step, so that they are looked at again.
-INLINE void yielded_force(const View& v, int j, unsigned char* gives, Sums& sums) {
+INLINE void yielded_force(const View& v, int j, unsigned char* gives, Partial& xx, Partial& zz) {
   unsigned char *yields = v.yields + Index(j) * v.tiles, any = 0;
   for (Index t = 0; t < v.tiles; ++t) gives[t] = gives_nothing, any |= yields[t];
   if (!any) return;
@@ -124,7 +130,6 @@ INLINE void yielded_force(const View& v, int j, unsigned char* gives, Sums& sums
   const HalfEdges out = half_edges(v, j);
   const QuadrantForces forces(v, out);
   const Real *g = v.degradation + row_at(v, j), *whole = v.whole_nodes + row_at(v, j);
-  Partial xx, zz;
   bool found = false;
   for (Index t = 0; t < v.tiles; ++t) {
     if (!yields[t]) continue;
@@ -133,7 +138,7 @@ INLINE void yielded_force(const View& v, int j, unsigned char* gives, Sums& sums
     yields[t] = does ? does_yield : nearly_yields, gives[t] = does ? gives_all : gives_nothing;
     found = found || does;
   }
-  if (found) finish(v, gives, out, xx, zz, sums);
+  if (found) finish(v, gives, out);
 }
 
 template <class Law>
@@ -143,13 +148,12 @@ INLINE Stress split_stress(const Law& law, Real g, const Strain& e) {
 }
 
 template <class Law>
-INLINE void split_force(const View& v, int j, unsigned char* gives, Sums& sums) {
+INLINE void split_force(const View& v, int j, unsigned char* gives, Partial& xx, Partial& zz) {
   const Around u = around(v, j);
   const Law n = LawOf<Law>::make(v.element_rows[j + 1]), s = LawOf<Law>::make(v.element_rows[j]);
   const Real per_hx = Real(1.0 / v.hx), per_hz = Real(1.0 / v.hz), *g = v.degradation + row_at(v, j), *weight = v.column_weight;
   const HalfEdges out = half_edges(v, j);
   const QuadrantForces forces(v, out);
-  Partial xx, zz;
   along_tiles(
       v.padded, TILE_BODY {
         const Quadrants e = strains(u, i, per_hx, per_hz);
@@ -157,22 +161,30 @@ INLINE void split_force(const View& v, int j, unsigned char* gives, Sums& sums) 
                    split_stress(n, g[i], e.ne), xx.at[l], zz.at[l]);
       });
   for (Index t = 0; t < v.tiles; ++t) gives[t] = gives_all;
-  finish(v, gives, out, xx, zz, sums);
+  finish(v, gives, out);
 }
 
-}  // namespace
-
-void force(const View& v, int j, Sums& sums) {
+// The law is chosen once for a row.
+INLINE void force_row(const View& v, int j, Partial& xx, Partial& zz) {
   unsigned char* gives = v.gives + Index(j) * v.tiles;
   switch (v.law) {
     case RowLaw::seed:
     case RowLaw::none:
-      return yielded_force(v, j, gives, sums);
+      return yielded_force(v, j, gives, xx, zz);
     case RowLaw::spectral:
-      return split_force<law::SpectralSplit<Real>>(v, j, gives, sums);
+      return split_force<law::SpectralSplit<Real>>(v, j, gives, xx, zz);
     case RowLaw::star_convex:
-      return split_force<law::StarConvexSplit<Real>>(v, j, gives, sums);
+      return split_force<law::StarConvexSplit<Real>>(v, j, gives, xx, zz);
   }
+}
+
+}  // namespace
+
+void force(const View& v, int begin, int end, Sums& sums) {
+  Partial xx, zz;
+  for (int j = begin; j < end; ++j) force_row(v, j, xx, zz);
+  add(sums.stress_xx, xx, v.hx);
+  add(sums.stress_zz, zz, v.hz);
 }
 
 }  // namespace fracfarm::phasefield::FRACFARM_KERNELS

@@ -12,8 +12,8 @@ double sweep(const View&, int j, const Real* psi, Real* next, Real omega, bool l
 double settle(const View&, int j, Real* psi);
 void rest(const View&, int j, const Real* psi, Real* previous, Real* other);
 double elastic_energy(const View&, int j);
-void degrade(const View&, int j, const Real* psi, const Real* before, Sums&);
-void force(const View&, int j, Sums&);
+void degrade(const View&, int begin, int end, const Real* psi, const Real* before, Sums&);
+void force(const View&, int begin, int end, Sums&);
 void kick(const View&, int first, int end, Real dt, Sums&);
 void surface(const View&, int begin, int end, const Real* psi, SurfaceParts&);
 bool differs(const Real* psi, Real limit, const unsigned char* marks, int count);
