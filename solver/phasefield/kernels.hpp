@@ -1,6 +1,6 @@
-// The work on one row of nodes, compiled once for each instruction set and number type from the same sources (kernels/) and chosen when a
-// run starts; which row when is the business of passes.cpp. Every path gives the same bits: no contraction, and a row's sum is made of
-// `lanes` partial sums added in a fixed order.
+// The work on one row of nodes, or a strip of them, compiled once for each instruction set and number type from the same sources (kernels/)
+// and chosen when a run starts; which row when is the business of passes.cpp. Every path gives the same bits: no contraction, and a sum is
+// made of `lanes` partial sums added in a fixed order.
 //
 // Everything is integrated at the corners of the elements, so that a node owns the four corners that meet in it: its quadrants sw se nw ne.
 // Outside the grid lie ghosts: rows of elements without stiffness below and above; columns of nodes left and right, placed so that the
