@@ -115,7 +115,7 @@ TEST_CASE("a tile that yields while its damage rests has the force of its strain
     if (run.state().whole || n < 100) continue;
     State<double> state = run.state();
     Scratch<double> scratch = run.scratch();
-    state.whole = true;
+    state.whole = true, state.moves.assign(state.moves.size(), 1);
     strain(model, state, scratch, kernels);  // finds all that yield
     int unseen_now = 0;
     for (std::size_t t = 0; t < state.yields.size(); ++t) {
