@@ -49,7 +49,7 @@ constexpr Rule table[]{
     {"linear", "no work on psi until it could rise", without_rule<&Rules::linear_until_damage>, as_it_is},
     {"yield", "the plastic law on those tiles only that yield", without_rule<&Rules::plastic_where_it_yields>, as_it_is},
     {"moves", "after the first sweeps only rows whose psi moved", without_rule<&Rules::sweep_where_it_moves>, as_it_is},
-    {"rest", "tiles that do not yield and whose psi hardly moves are left alone in three of four steps",
+    {"rest", "tiles whose psi hardly moves are left alone in three of four steps, but for their forces",
      without_rule<&Rules::work_where_it_moves>, as_it_is},
     {"float", "numbers of 32 bits against 64", as_it_is, in_float},
     {"settle", "rows are swept until psi is good to the solver's tolerance, against 1e-9", settled_fully, as_it_is},

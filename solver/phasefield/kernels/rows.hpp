@@ -51,10 +51,6 @@ INLINE void along_tile(Index tile, const Body& body) {
   }
 }
 template <class Body>
-INLINE void along_run(Run run, const Body& body) {
-  for (Index tile = run.begin; tile < run.end; tile += lanes) along_tile(tile, body);
-}
-template <class Body>
 INLINE void along_tiles(Index n, const Body& body) {
   for (Index tile = 0; tile < n; tile += lanes) along_tile(tile, body);
 }
@@ -100,13 +96,7 @@ INLINE double ordered_sum(const Partial& part) {
   return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
-// Of the numbers of a tile; the order does not matter.
-INLINE Real largest(const Real* x) {
-  Real most = x[0];
-#pragma omp simd reduction(max : most)
-  for (Index l = 0; l < lanes; ++l) most = larger(x[l], most);
-  return most;
-}
+// The order does not matter.
 INLINE Real largest(Wide x) {
   Real at[width], most = x[0];
   store(at, x);

@@ -82,8 +82,8 @@ class Column {
   }
 
   INLINE Wide stress_xx() const { return c_.along_x * stretch_x_ + Real(2) * c_.c13 * stretch_z_; }
-  INLINE Wide square() const { return square_; }  // sum of the squares of twice the mean velocity
   INLINE Wide stress_zz() const { return c_.c33 * stretch_z_ + Real(2) * c_.c13 * stretch_x_; }
+  INLINE Wide square() const { return square_; }  // sum of the squares of twice the mean velocity
 
  private:
   INLINE void row(int k, const Lent& south, const Lent& here, Lent& north) {
